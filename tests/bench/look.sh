@@ -76,10 +76,11 @@ done
 if [ "${FACE:-yes}" = yes ]; then
 	face=$root/face
 	cp -r samples/face "$face"
+	# glTF knows nothing of light below the skin: neither picture has any.
 	# The .glb's animation begins as the picture stands: looking straight ahead, at nothing near.
 	sed -i '0,/^0,0,0,1000,/s//0,0,0,1e7,/' "$face"/script/*.csv
 	mkdir -p "$face/photos" && cp "$PHOTO" "$face/photos"
-	printf '%s\n' "quality = review" "render.look_px = 640" "render.clip_px = 0" "render.blink_frames = 3" "render.sheet_px = 300" "export.make = yes" >>"$face/capture.conf"
+	printf '%s\n' "quality = review" "render.look_px = 640" "render.clip_px = 0" "render.blink_frames = 3" "render.sheet_px = 300" "render.skin_scatter_mm = 0" "export.make = yes" >>"$face/capture.conf"
 	run_make "$face" || { tail -n 3 "$log"; exit 1; }
 	field=$(sed -n 's/^face_field = //p' config/render.conf)
 	for layers in "$face"/work/render/*_look_layers.exr; do

@@ -27,6 +27,8 @@ for o in bpy.data.objects:
         o.material_slots[0].material = assembled[part]
         if part in ("cornea", "sclera", "iris"):  # as blender_eye.py has them
             o.visible_shadow = o.visible_diffuse = False
+    if o.name == "tears":
+        o.visible_shadow = o.visible_diffuse = False
 bpy.context.view_layer.update()
 left, right = (bpy.data.objects["eye_" + side].matrix_world.translation for side in ("left", "right"))
 middle, apart = (left + right) / 2, (left - right).length

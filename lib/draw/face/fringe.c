@@ -10,11 +10,14 @@
 static const float reach[2] = { 1.2f, 2.8f };  // of the globe's radius: the eye; brows, too
 static const float cell_mm[2] = { 0.15f, 0.3f };
 static const float apart_mm = 0.3f;   // behind hairs by less than that they shade a place by part
+static const float lifted_mm = 0.6f;  // hairs that lie on skin are nearer to it than its facets are to each other: so much they are taken to be before it
+static const float seen_lit = 0.5f;   // of the shade of such hairs: what is seen between them is what light from before comes to, too
 static const float step = 0.4f;       // between points of a hair, of their shadows' half width
 static const float widest = 0.4f;     // tangent of half the angle between directions, at most
 
 struct plane {
 	float across[3], up[3], dir[3];
+	float weight;   // the light's luminance
 	float spread;   // tangent of half the angle to the nearest other direction
 	float (*depth)[2];   // [cells][cells]; and that times where, mm from the globe's middle towards the light
 };
@@ -39,6 +42,7 @@ static void plane_make(struct plane *plane, int cells, int k, int n, const struc
 		plane->dir[c] = d[c];
 		plane->across[c] = (c == thin) - d[c] * d[thin];
 	}
+	plane->weight = 0.2126f * light[k].rgb[0] + 0.7152f * light[k].rgb[1] + 0.0722f * light[k].rgb[2];
 	vecf_unit(plane->across);
 	vecf_cross(plane->up, d, plane->across);
 	for (int i = 0; i < n; i++)
@@ -56,9 +60,9 @@ static float softness(const struct portrait_fringe *f, const struct plane *plane
 }
 
 /* A piece of a hair, of that area perpendicular to the light, as a tent round the place of its shadow. */
-static void put(const struct portrait_fringe *f, const struct plane *plane, const float off[3], float area, float wide)
+static void put(const struct portrait_fringe *f, const struct plane *plane, const float off[3], float area, float wide, float lifted)
 {
-	const float half = 0.5f * (float)f->cells, i = dot(off, plane->across) / f->cell + half, j = dot(off, plane->up) / f->cell + half, s = dot(off, plane->dir);
+	const float half = 0.5f * (float)f->cells, i = dot(off, plane->across) / f->cell + half, j = dot(off, plane->up) / f->cell + half, s = dot(off, plane->dir) + lifted;
 	const float height = area / (f->cell * f->cell * wide * wide);
 	const int x0 = (int)fmaxf(ceilf(i - wide), 0), x1 = (int)fminf(floorf(i + wide), (float)(f->cells - 1));
 	const int y0 = (int)fmaxf(ceilf(j - wide), 0), y1 = (int)fminf(floorf(j + wide), (float)(f->cells - 1));
@@ -80,12 +84,13 @@ static void put_hair(const struct portrait_fringe *f, const struct plane *plane,
 		float off[3];
 		for (int c = 0; c < 3; c++)
 			off[c] = 0.5f * (point[k][c] + point[k + 1][c]) - f->center[c];
-		const float wide = softness(f, plane, off, h->kind == HAIR_BROW), across2 = fmaxf(len2 - along * along, 0);
+		const bool lies = h->kind == HAIR_BROW;
+		const float wide = softness(f, plane, off, lies), across2 = fmaxf(len2 - along * along, 0);
 		const int pieces = 1 + (int)(sqrtf(across2) / (step * wide * f->cell));
 		for (int i = 0; i < pieces; i++) {
 			for (int c = 0; c < 3; c++)
 				off[c] = point[k][c] + ((float)i + 0.5f) / (float)pieces * way[c] - f->center[c];
-			put(f, plane, off, breadth * sqrtf(across2) / (float)pieces, wide);
+			put(f, plane, off, (lies ? seen_lit : 1) * breadth * sqrtf(across2) / (float)pieces, wide, lies ? lifted_mm : 0);
 		}
 	}
 }
@@ -145,4 +150,33 @@ float portrait_fringe_through(const struct portrait_fringe *f, int k, const floa
 	if (!(depth > 0))
 		return 1;
 	return expf(-depth * fminf(fmaxf((where / depth - dot(off, plane->dir)) / apart_mm, 0), 1));
+}
+
+static float over(const struct portrait_fringe *f, const float at[3], const float normal[3])
+{
+	float sum = 0, all = 0, off[3];
+	for (int c = 0; c < 3; c++)
+		off[c] = at[c] - f->center[c];
+	if (4 * dot(off, off) > 2 * (float)f->cells * f->cell * (float)f->cells * f->cell)  // beyond all corners
+		return 1;
+	for (int k = 0; k < f->n; k++) {
+		const float w = f->plane[k].weight * dot(f->plane[k].dir, normal);
+		if (!(w > 0))
+			continue;
+		all += w;
+		sum += w * portrait_fringe_through(f, k, at);
+	}
+	return all > 0 ? sum / all : 1;
+}
+
+float portrait_under_hair(const struct portrait *p, const float at[3], const float normal[3])
+{
+	float away2[2] = { 0 };
+	for (int side = 0; side < 2; side++)
+		for (int c = 0; c < 3; c++) {
+			const float off = at[c] - (float)p->rig->globe[side].center[c];
+			away2[side] += off * off;
+		}
+	const struct portrait_fringe *f = p->fringe[away2[1] < away2[0]];
+	return f ? over(f, at, normal) : 1;
 }

@@ -39,7 +39,7 @@ struct portrait_sky {
 	float rig_from_cam[3][3];
 	struct envmap_light light[ENVMAP_LIGHTS_MAX];  // in the rig's axes
 };
-/* Light that skin sends from where a ray meets it between from and to (mm), over pi: its albedo times light [rig.n]. False: there is none. */
+/* Light that skin sends from where a ray meets it between from and to (mm), over pi: its albedo times light [rig.n], in the shade of hairs. False: there is none. */
 bool portrait_skin_light(float rgb[3], const struct portrait *portrait, const float (*light)[3], const float at[3], const float dir[3], float from, float to);
 
 /* shade.c: colour of the point of a face that the ray from origin along dir (unit) meets. light: irradiance there; null:
@@ -56,7 +56,7 @@ bool portrait_cut_away(const struct portrait *portrait, int face, const float w[
 /* Unit normal of such a point, without folds and pores; of a hair the ribbon's. */
 void portrait_normal(float normal[3], const struct portrait *portrait, int face, const float origin[3], const float dir[3]);
 
-/* Irradiance of such a point, before skin spreads it. */
+/* Irradiance of such a point, in the shade of hairs, before skin spreads it. */
 void portrait_bare_light(float rgb[3], const struct portrait *portrait, int face, const float origin[3], const float dir[3]);
 struct portrait_sky portrait_sky_of(const struct portrait *portrait, const struct portrait_view *view);
 
@@ -158,6 +158,9 @@ struct portrait_fringe;
 struct portrait_fringe *portrait_fringe_new(const struct portrait *portrait, int side, bool brows, int n, const struct envmap_light light[]);
 void portrait_fringe_free(struct portrait_fringe *fringe);
 float portrait_fringe_through(const struct portrait_fringe *fringe, int k, const float at[3]);
+
+/* What hairs leave of all light at a place with that normal, in the light of the last portrait_light; 1 before that. */
+float portrait_under_hair(const struct portrait *portrait, const float at[3], const float normal[3]);
 
 /* The camera in the rig's frame, and a pixel's ray there (dir: unit; scale: its length along the camera's axis). */
 struct portrait_rays {

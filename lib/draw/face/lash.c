@@ -121,9 +121,12 @@ void portrait_lash_colour(float rgb[3], const struct portrait *p, int face)
 	const int point = p->hair_piece[(face - p->first_lash) / TRIANGLES];
 	const struct hair *h = &p->hairs.hair[p->hair_of[point]];
 	const float tip = (float)(point - h->first) / (float)(h->n - 1);
-	const int root = h->vertex[0];
+	const float *light = p->mesh.light[h->vertex[0]], *x = p->mesh.x[p->lash_vertex + 2 * point], *normal = p->mesh.normal[h->vertex[0]];
+	// Of a brow some are before the hair, some behind it.
+	const float before = (float)(p->hair_of[point] * 0x9e3779b1u >> 16 & 0xff) / 256;
+	const float under = h->kind == HAIR_BROW ? powf(portrait_under_hair(p, x, normal), before) : 1;
 	double albedo[3];
 	portrait_lash_albedo(albedo, p, h);
 	for (int c = 0; c < 3; c++)
-		rgb[c] = ((float)albedo[c] * (1 + tips * tip) + sheen) * (p->mesh.light[root][c] + p->bald[root][c] - p->direct[root][c]);
+		rgb[c] = ((float)albedo[c] * (1 + tips * tip) + sheen) * under * light[c];
 }

@@ -39,10 +39,10 @@ enum { RAYS = 24 };
 static const float lift_mm = 0.15f, from_mm = 0.25f, far_mm = 120;
 
 /* Light that comes from the environment alone. Returns whether skin stands before some of it. */
-static bool light_vertex(struct portrait *p, const struct portrait_sky *sky, const struct portrait_fringe *fringe, int i)
+static bool light_vertex(struct portrait *p, const struct portrait_sky *sky, int i)
 {
 	const float *x = p->mesh.x[i], *n = p->mesh.normal[i];
-	float sum[3] = { 0 }, bald[3] = { 0 }, open = 0, all = 1e-9f, from[3];
+	float sum[3] = { 0 }, open = 0, all = 1e-9f, from[3];
 	bool beside = false;
 	for (int c = 0; c < 3; c++)
 		from[c] = x[c] + lift_mm * n[c];
@@ -56,15 +56,11 @@ static bool light_vertex(struct portrait *p, const struct portrait_sky *sky, con
 			beside = true;
 			continue;
 		}
-		const float through = portrait_fringe_through(fringe, k, x);
-		open += through * weight;
-		for (int c = 0; c < 3; c++) {
-			sum[c] += through * facing * rgb[c];
-			bald[c] += facing * rgb[c];
-		}
+		open += weight;
+		for (int c = 0; c < 3; c++)
+			sum[c] += facing * rgb[c];
 	}
 	memcpy(p->direct[i], sum, sizeof sum);
-	memcpy(p->bald[i], bald, sizeof bald);
 	memcpy(p->lit_at[i], x, 3 * sizeof *x);
 	p->mesh.open[i] = open / all;
 	return beside;
@@ -77,10 +73,14 @@ bool portrait_skin_light(float rgb[3], const struct portrait *p, const float (*l
 		return false;
 	const int32_t *v = p->solid[hit.face];
 	const float w[3] = { 1 - hit.u - hit.v, hit.u, hit.v };
+	float x[3];
+	for (int c = 0; c < 3; c++)
+		x[c] = at[c] + hit.t * dir[c];
+	const float under = portrait_under_hair(p, x, p->mesh.normal[v[0]]);
 	for (int c = 0; c < 3; c++) {
 		rgb[c] = 0;
 		for (int k = 0; k < 3; k++)
-			rgb[c] += w[k] * light[v[k]][c] * p->mesh.albedo[v[k]][c];
+			rgb[c] += under * w[k] * light[v[k]][c] * p->mesh.albedo[v[k]][c];
 	}
 	return true;
 }
@@ -133,7 +133,10 @@ void portrait_light(struct portrait *p, const struct portrait_view *view, bool a
 	static const float rate[3] = { 1, 0.35f, 0.18f };  // green and blue travel less far
 	struct portrait_mesh *m = &p->mesh;
 	struct portrait_sky sky = portrait_sky_of(p, view);
-	struct portrait_fringe *fringe[2] = { portrait_fringe_new(p, 0, true, sky.n, sky.light), portrait_fringe_new(p, 1, true, sky.n, sky.light) };
+	for (int side = 0; side < 2; side++) {
+		portrait_fringe_free(p->fringe[side]);
+		p->fringe[side] = portrait_fringe_new(p, side, true, sky.n, sky.light);
+	}
 	enum { KEPT, OPEN, BESIDE };
 	uint8_t *fresh = mem_new((size_t)p->rig->n + 1, sizeof *fresh);
 #pragma omp parallel for schedule(dynamic, 64)
@@ -143,7 +146,7 @@ void portrait_light(struct portrait *p, const struct portrait_view *view, bool a
 			moved += fabsf(p->lit_at[i][c] - m->x[i][c]);
 		// A quarter of a millimetre changes no shadow that is seen; whole faces of vertices stand still.
 		if (p->near_start[i + 1] > p->near_start[i] && (all || moved > 0.25f))
-			fresh[i] = light_vertex(p, &sky, fringe[p->rig->side[i]], i) ? BESIDE : OPEN;
+			fresh[i] = light_vertex(p, &sky, i) ? BESIDE : OPEN;
 	}
 #pragma omp parallel for schedule(dynamic, 64)
 	for (int i = 0; i < p->rig->n; i++) {
@@ -153,8 +156,6 @@ void portrait_light(struct portrait *p, const struct portrait_view *view, bool a
 			light_between(p, i);
 	}
 	free(fresh);
-	for (int side = 0; side < 2; side++)
-		portrait_fringe_free(fringe[side]);
 	memcpy(m->bare, p->lit, (size_t)p->rig->n * sizeof *m->bare);
 	memcpy(m->light, p->lit, (size_t)p->rig->n * sizeof *m->light);
 	for (int round = 0; round < 2; round++)

@@ -83,7 +83,6 @@ struct portrait *portrait_new(const struct rig *rig, const struct scene *const e
 	neighbours(p);
 	colours(p);
 	p->direct = mem_new((size_t)rig->n + 1, sizeof *p->direct);
-	p->bald = mem_new((size_t)rig->n + 1, sizeof *p->bald);
 	p->lit = mem_new((size_t)rig->n + 1, sizeof *p->lit);
 	p->lit_at = mem_new((size_t)rig->n + 1, sizeof *p->lit_at);
 	deform_rest(p->deform, p->mesh.x, p->mesh.normal);
@@ -113,7 +112,8 @@ void portrait_free(struct portrait *p)
 	free(p->wrinkle_input);
 	free(p->wrinkle_strength);
 	free(p->direct);
-	free(p->bald);
+	for (int side = 0; side < 2; side++)
+		portrait_fringe_free(p->fringe[side]);
 	free(p->lit);
 	free(p->lit_at);
 	free(p->near_start);

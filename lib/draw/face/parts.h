@@ -19,11 +19,11 @@ struct portrait {
 	struct ray_scene *shadow;   // the skin's own triangles
 	int32_t (*solid)[3];        // their vertices
 	float (*direct)[3];         // irradiance at the rig's vertices that no skin sends
-	float (*bald)[3];           // the same without the shade of hairs: that is what they have themselves
 	float (*lit)[3];            // all of it, before it is spread
 	float (*lit_at)[3];         // where they were then
 	int *near_start, *near;     // neighbours of the rig's vertices
 	float *spread;              // diffusion weight of each neighbour, for red
+	struct portrait_fringe *fringe[2];  // the hairs about each eye in the light of the last portrait_light; null before that
 	double target_from_globe[2][3][3];
 	struct hairs hairs;         // their triangles are the mesh's last, from first_lash; their vertices, two a point, from lash_vertex
 	int first_lash, lash_vertex;

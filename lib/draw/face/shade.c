@@ -82,16 +82,6 @@ struct point {
 	float x[3], rest[3], normal[3], light[3], albedo[3], open, wet, weight[3];
 };
 
-void portrait_bare_light(float rgb[3], const struct portrait *p, int face, const float origin[3], const float dir[3])
-{
-	const struct portrait_mesh *m = &p->mesh;
-	const int32_t *v = m->faces[face];
-	float w[3];
-	portrait_mesh_weights(w, m, face, origin, dir);
-	for (int c = 0; c < 3; c++)
-		rgb[c] = w[0] * m->bare[v[0]][c] + w[1] * m->bare[v[1]][c] + w[2] * m->bare[v[2]][c];
-}
-
 static struct point point_of(const struct portrait_mesh *m, int face, const float origin[3], const float dir[3])
 {
 	const int32_t *v = m->faces[face];
@@ -116,6 +106,15 @@ static struct point point_of(const struct portrait_mesh *m, int face, const floa
 	for (int d = 0; d < 3; d++)
 		p.normal[d] /= sqrtf(len) + 1e-12f;
 	return p;
+}
+
+void portrait_bare_light(float rgb[3], const struct portrait *p, int face, const float origin[3], const float dir[3])
+{
+	const struct point q = point_of(&p->mesh, face, origin, dir);
+	const int32_t *v = p->mesh.faces[face];
+	const float under = portrait_under_hair(p, q.x, q.normal);
+	for (int c = 0; c < 3; c++)
+		rgb[c] = under * (q.weight[0] * p->mesh.bare[v[0]][c] + q.weight[1] * p->mesh.bare[v[1]][c] + q.weight[2] * p->mesh.bare[v[2]][c]);
 }
 
 /* Mucous membrane: the grain of skin's pores, but higher, below a film of tears. */
@@ -185,8 +184,10 @@ void portrait_shade(float rgb[3], const struct portrait *p, const struct portrai
                     const float dir[3], const float *light)
 {
 	struct point q = point_of(&p->mesh, face, origin, dir);
-	if (light)
-		memcpy(q.light, light, sizeof q.light);
+	const float under = face < p->first_lash ? portrait_under_hair(p, q.x, q.normal) : 1;
+	q.open *= under;
+	for (int c = 0; c < 3; c++)
+		q.light[c] = light ? light[c] : under * q.light[c];
 	if (face < p->mesh.n_dressed)
 		wear(&q, p, face, sky->pixel_mm);
 	float strength = (float)p->conf.texture * sky->detail, to[3] = { -dir[0], -dir[1], -dir[2] }, n[3], grain = 0;
