@@ -17,6 +17,7 @@
 #include "track/clip/expressions.h"
 #include "track/clip/follow.h"
 #include "track/clip/kappa.h"
+#include "track/clip/margins.h"
 #include "track/clip/others.h"
 #include "track/clip/refine.h"
 #include "track/clip/settle.h"
@@ -120,6 +121,8 @@ static bool work(struct stage *stage, struct track_clip *clip, struct track_subj
 	if (!track_kappa(result, conf, err))
 		return false;
 	track_corners(result, clip, subject, points);
+	if (!track_margins(result, stage, clip, subject, conf, err))
+		return false;
 	track_tapers(result, subject);
 	track_apertures(result, clip, subject, conf);
 	if (subject->assumed)

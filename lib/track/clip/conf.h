@@ -23,6 +23,14 @@ struct track_canthi_conf {
 	double least_area;     // squares of the radius: of less that shows nothing is told
 };
 
+/* Lids by the evidence over the clip (margins.h), shares of the iris' radius; the inner corner before the outer. */
+struct track_lids_conf {
+	int every;             // one frame in so many is looked at; 0: none
+	double found_sigma;    // standard deviation of corners and margins as they were followed
+	double corner_sigma[4];  // that of the corners that the evidence tells, each outwards and downwards
+	double ends_sigma[2], ends_beyond[2];  // canthi's outline_sigma and outline_beyond at the ends of the margins
+};
+
 struct track_conf {
 	struct video_conf video;
 	struct eye eye;
@@ -65,6 +73,7 @@ struct track_conf {
 	int chunk;             // frames after which what has been followed is kept on disk; 0: never
 	long every, limit;     // one frame in so many is followed, so many in all; 0: all
 	struct track_canthi_conf canthi;
+	struct track_lids_conf lids;
 	double meniscus_mm;    // from the eyeball to the inner edge of a lid's margin in the corners of the eye
 	double kappa[2], kappa_sigma[2];     // degrees: prior of the line of sight against the optical axis, towards the nose and up
 	double camera_frames[2];             // first and last of those in which the person looks into the camera; NAN: not told
