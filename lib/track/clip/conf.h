@@ -26,7 +26,8 @@ struct track_canthi_conf {
 /* Lids by the evidence over the clip (margins.h), shares of the iris' radius; the inner corner before the outer. */
 struct track_lids_conf {
 	int every;             // one frame in so many is looked at; 0: none
-	double found_sigma;    // standard deviation of corners and margins as they were followed
+	double most_px;        // radius of the iris beyond which what is followed is known better
+	double found_px;       // standard deviation of corners and margins as they were followed, px
 	double corner_sigma[4];  // that of the corners that the evidence tells, each outwards and downwards
 	double ends_sigma[2], ends_beyond[2];  // canthi's outline_sigma and outline_beyond at the ends of the margins
 };

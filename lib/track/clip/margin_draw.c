@@ -64,9 +64,11 @@ static double agrees(double off, const struct margins *m)
 	return 1 / (1 + pow(off / m->conf->canthi.most, 4));
 }
 
-static double share(double sigma, double found)
+/* How much the evidence counts beside what was followed: by their variances. sigma: of the evidence, of the radius. px */
+static double share(double sigma, double radius, const struct margins *m)
 {
-	return found * found / (found * found + sigma * sigma);
+	const double told = sigma * radius, found = m->conf->lids.found_px;
+	return found * found / (found * found + told * told);
 }
 
 /* Moves both margins' ends at corner c to where the evidence has it, and the rest the less the further it is from there. */
@@ -106,7 +108,7 @@ static void corner(struct margins *m, int c)
 			continue;
 		double move[2] = { 0 };
 		for (int k = 0; k < 2; k++) {
-			const double by = radius_at(m, f) * share(told[k], m->conf->lids.found_sigma) * about(m, f, k);
+			const double radius = radius_at(m, f), by = radius * share(told[k], radius, m) * about(m, f, k);
 			for (int i = 0; i < 2; i++)
 				move[i] += by * way[f][k][i];
 		}
@@ -181,7 +183,7 @@ static void margin(struct margins *m, int lid, double (*to)[LID_POINTS_MAX][2])
 		for (int i = 0; known(m, f) && i < state->lid_points; i++) {
 			double out[2];
 			const double sigma = towards(c->lids.ends_sigma, middle, (double)i / (state->lid_points - 1), fades);
-			const double by = radius_at(m, f) * share(sigma, c->lids.found_sigma) * about(m, f, i);
+			const double radius = radius_at(m, f), by = radius * share(sigma, radius, m) * about(m, f, i);
 			outward(out, state, lid, i);
 			for (int k = 0; k < 2; k++)
 				to[f][i][k] = state->lid[lid][i][k] + by * out[k];

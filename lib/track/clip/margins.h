@@ -5,7 +5,7 @@
 #define TRACK_CLIP_MARGINS_H
 #include "track/clip/margin_seen.h"
 
-/* After track_corners. Of faces with a mesh; nothing is done where conf's lids.every is 0. */
+/* After track_corners. Of faces with a mesh and irises no larger than conf's lids.most_px; nothing is done where its lids.every is 0. */
 bool track_margins(struct track_result *result, struct stage *stage, const struct track_clip *clip, const struct track_subject *subject, const struct track_conf *conf,
                    struct err *err);
 

@@ -9,7 +9,7 @@ static const double radius = 40, wide = 160;
 
 static const struct track_conf conf = {
 	.canthi = { .beyond = { 0.06, -0.04, 0.1, 0.02 }, .outline_beyond = 0.03, .outline_sigma = 0.03, .most = 0.3 },
-	.lids = { .every = EVERY, .found_sigma = 0.05, .corner_sigma = { 1, 0.06, 0.06, 0.045 }, .ends_sigma = { 0.03, 0.03 }, .ends_beyond = { 0.03, 0.03 } },
+	.lids = { .every = EVERY, .found_px = 2, .corner_sigma = { 1, 0.06, 0.06, 0.045 }, .ends_sigma = { 0.03, 0.03 }, .ends_beyond = { 0.03, 0.03 } },
 };
 
 /* Height of a margin at the share u of the way between corners, px. */
