@@ -198,7 +198,7 @@ static void margin(struct margins *m, int lid, double (*to)[LID_POINTS_MAX][2])
 static void join(struct margins *m)
 {
 	for (long f = 0; f < m->n; f++)
-		for (int c = 0; c < 2 && known(m, f); c++) {
+		for (int c = 0; c < 2 && known(m, f) && radius_at(m, f) > 0; c++) {
 			struct eye_state *state = &m->r->eyes.state[f][m->side];
 			const int i = c ? state->lid_points - 1 : 0;
 			for (int k = 0; k < 2; k++)
