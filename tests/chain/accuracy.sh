@@ -58,8 +58,8 @@ gaze, vertical, 95 %                              | 0.276   | deg
 torsion                                           | 0.322   | deg
 torsion, 95 %                                     | 1.03    | deg
 gaze, frames with open eyes that lack it          | 0       | %
-lid margins                                       | 0.735   | px
-lid margins, 95 %                                 | 3.06    | px
+lid margins                                       | 0.713   | px
+lid margins, 95 %                                 | 2.82    | px
 aperture                                          | 1.51    | px
 skin, motion since the reference                  | 0.163   | px
 skin, motion, 95 %                                | 2.44    | px
