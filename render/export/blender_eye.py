@@ -79,9 +79,9 @@ def build():
     # Light goes straight to the iris, whose albedo holds what the cornea takes of it and its own shadows; sight is refracted. Bent light
     # would be a caustic: true, and noise for thousands of samples. It also comes from aside, where the sclera would stand before it. Tears, where
     # there are lids, are as clear.
-    for name in ("cornea", "sclera", "iris", "tears"):
-        if name in bpy.data.objects:
-            bpy.data.objects[name].visible_shadow = bpy.data.objects[name].visible_diffuse = False
+    for part in map(bpy.data.objects.get, ("cornea", "sclera", "iris", "tears")):
+        if part:
+            part.visible_shadow = part.visible_diffuse = False
 
 
 bpy.ops.import_scene.gltf(filepath=os.path.join(folder, "eye.glb"))
