@@ -145,7 +145,7 @@ void portrait_eyes(struct image out[2], int at[2][2], const struct portrait *p, 
 		if (!light.n)
 			light = scene_lighting(p->env, p->matte ? 0 : p->env, 8);
 		out[side] = scene_render(p->eye[side], &view, &light, &count);
-		struct image matte = image_new(0, 0, 4);
+		struct image matte = { 0 };
 		if (!p->matte) {
 			struct scene_lighting dull = light;
 			dull.mirror = 0;
