@@ -118,6 +118,7 @@ static void hairs_turn_with_their_roots(void **state)
 	free(x);
 }
 
+/* A tube of three sides is as wide as a round hair in the mean over where it is seen from: its girth over pi (Cauchy). A ribbon is as wide from before. */
 static void strands_are_as_thick_as_hairs(void **state)
 {
 	const struct driven *m = *state;
@@ -128,16 +129,24 @@ static void strands_are_as_thick_as_hairs(void **state)
 		const struct hair *h = &m->hairs.hair[i];
 		const int sides = h->kind == HAIR_BROW ? 2 : 3;
 		hair_place(point, &m->hairs, h, &m->rig, (const float(*)[3])m->rig.rest);
-		for (int k = 0; k < h->n; k++)
-			for (int s = 0; s < (k + 1 < h->n ? sides : 1); s++, row++) {
-				double d[3], u[3];
+		for (int k = 0; k < h->n; k++) {
+			const int ring = k + 1 < h->n ? sides : 1, first = row;
+			double girth = 0;
+			for (int s = 0; s < ring; s++, row++) {
+				double d[3], u[3], side[3];
 				for (int c = 0; c < 3; c++) {
 					d[c] = (double)x[row][c] - (double)point[k][c];
 					u[c] = (double)normal[row][c];
+					side[c] = (double)x[first + (s + 1) % ring][c] - (double)x[row][c];
 				}
-				NEAR(vec_norm(d), k + 1 < h->n ? (double)hair_half(h, k) : 0, 1e-4);
+				girth += vec_norm(side);
+				if (ring < 3)
+					NEAR(vec_norm(d), ring == 2 ? (double)hair_half(h, k) : 0, 1e-4);
 				NEAR(vec_norm(u), 1, 1e-4);
 			}
+			if (ring == 3)
+				NEAR(girth / M_PI, 2 * (double)hair_half(h, k), 1e-4);
+		}
 		assert_true(row <= n && (i + 1 < m->hairs.n || row == n));
 	}
 	free(x);
