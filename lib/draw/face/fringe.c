@@ -8,7 +8,7 @@
 #include "math/vec.h"
 
 static const float reach[2] = { 1.2f, 2.8f };  // of the globe's radius: the eye; brows, too
-static const float cell_mm[2] = { 0.15f, 0.3f };
+static const float cell_mm[2] = { 0.15f, 0.3f };  // on an eyeball of 12 mm radius
 static const float apart_mm = 0.3f;   // behind hairs by less than that they shade a place by part
 static const float lifted_mm = 0.6f;  // hairs that lie on skin are nearer to it than its facets are to each other: so much they are taken to be before it
 static const float seen_lit = 0.5f;   // of the shade of such hairs: what is seen between them is what light from before comes to, too
@@ -100,7 +100,7 @@ struct portrait_fringe *portrait_fringe_new(const struct portrait *p, int side, 
 	struct portrait_fringe *f = mem_new(1, sizeof *f);
 	const struct rig_globe *g = &p->rig->globe[side];
 	f->radius = (float)g->radius;
-	f->cell = cell_mm[brows];
+	f->cell = cell_mm[brows] * f->radius / 12;
 	f->cells = 2 * (int)ceilf(reach[brows] * f->radius / f->cell);
 	f->n = n;
 	for (int c = 0; c < 3; c++)
