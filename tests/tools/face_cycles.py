@@ -25,9 +25,7 @@ for o in bpy.data.objects:
     part = o.name.split("_", 2)[-1]
     if o.name.startswith("eye_") and o.type == "MESH":
         o.material_slots[0].material = assembled[part]
-        if part in ("cornea", "sclera", "iris"):  # as blender_eye.py has them
-            o.visible_shadow = o.visible_diffuse = False
-    if o.name == "tears":
+    if part in ("cornea", "sclera", "iris", "tears"):  # as blender_eye.py has them
         o.visible_shadow = o.visible_diffuse = False
 bpy.context.view_layer.update()
 left, right = (bpy.data.objects["eye_" + side].matrix_world.translation for side in ("left", "right"))

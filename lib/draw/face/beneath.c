@@ -10,7 +10,7 @@
 
 enum { RAYS = 16 };  // that look for skin
 static const float lift_mm = 0.02f, far_mm = 120, skin_mm = 60;
-static const float white_over_iris = 5;
+static const float white_over_iris = 5;  // their radiances, about
 static const double beyond_mm = 0.1;  // the limbus lets light in (draw/eye/rim_edge.h), and is less deep by about as much
 
 struct portrait_beneath {
@@ -178,9 +178,9 @@ static void light_of(float share[3], const struct portrait_beneath *b, const str
 			all[c] += w * b->light[k].rgb[c];
 		if (ray_blocked(b->p->shadow, from, d, lift_mm, far_mm))
 			continue;
-		const float through = portrait_fringe_through(b->fringe, k, from);
+		const float left = portrait_fringe_through(b->fringe, k, from);
 		for (int c = 0; c < 3; c++)
-			sum[c] += w * through * b->light[k].rgb[c];
+			sum[c] += w * left * b->light[k].rgb[c];
 	}
 	add_skin(sum, b, spot, through);
 	for (int c = 0; c < 3; c++)

@@ -2,9 +2,11 @@
  * they are. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/mem.h"
 #include "draw/face/impl.h"
+#include "draw/face/sky.h"
 #include "math/vec.h"
 
 static const float reach[2] = { 1.2f, 2.8f };  // of the globe's radius: the eye; brows, too
@@ -36,15 +38,12 @@ static float dot(const float a[3], const float b[3])
 static void plane_make(struct plane *plane, int cells, int k, int n, const struct envmap_light light[])
 {
 	const float *d = light[k].dir;
+	const struct portrait_fan frame = portrait_fan_of(d);
 	float nearest = -1;
-	const int thin = fabsf(d[0]) < 0.6f ? 0 : 1;
-	for (int c = 0; c < 3; c++) {
-		plane->dir[c] = d[c];
-		plane->across[c] = (c == thin) - d[c] * d[thin];
-	}
+	memcpy(plane->dir, frame.normal, sizeof plane->dir);
+	memcpy(plane->across, frame.across, sizeof plane->across);
+	memcpy(plane->up, frame.up, sizeof plane->up);
 	plane->weight = 0.2126f * light[k].rgb[0] + 0.7152f * light[k].rgb[1] + 0.0722f * light[k].rgb[2];
-	vecf_unit(plane->across);
-	vecf_cross(plane->up, d, plane->across);
 	for (int i = 0; i < n; i++)
 		nearest = i == k ? nearest : fmaxf(nearest, dot(d, light[i].dir));
 	plane->spread = fminf(sqrtf(fmaxf(1 - nearest, 0) / (1 + nearest)), widest);

@@ -13,7 +13,6 @@
 #include "draw/smooth.h"
 #include "image/distance/distance.h"
 
-
 /* A part of the screen round one eye: inputs and outputs of the distance field. */
 struct field {
 	int x0, y0, width, height;
