@@ -71,6 +71,7 @@ struct limbus_conf {
 	double tolerance;      // share of the semi-axis: an answer that is farther off is a gross error
 	double rough_tolerance; // the widest to which a refused ellipse may be known
 	double max_gross;      // chance of that, beyond which a limbus is refused
+	double rough_gross;    // chance of being farther off than it is known to, beyond which it is not known roughly either
 	double sure_gross;     // chance of being off below which the votes of edges are not asked
 	double max_rms;        // scatter of an edge that is believed by a hand's mark, share of the semi-axis
 	double hint_sigma, drawn_sigma;  // of what a person says: share of the semi-axis

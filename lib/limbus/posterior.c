@@ -108,7 +108,7 @@ void posterior_settle(struct posterior *p, struct rim *rim, const struct trials 
 		p->gross = fmax(p->gross, t->conf->same.moved);
 }
 
-/* The chance that the answer is off by more than another tolerance: 1 where another of the trials would be the likeliest. */
+/* The chance that the answer is off by more than another tolerance: 1 where another of the trials would be the likeliest that lies farther off than that. */
 static double gross_at(const struct posterior *p, const struct rim *rim, const struct trials *t, double tolerance)
 {
 	struct trials *at = mem_new(1, sizeof *at);
@@ -123,16 +123,18 @@ static double gross_at(const struct posterior *p, const struct rim *rim, const s
 		trial->log_odds += odds_log(trial->curve, tolerance) - odds_log(trial->curve, t->conf->tolerance);
 	}
 	posterior_of(&posterior, at);
-	const bool other = posterior.best != p->best || moved(rim, &at->trial[p->best], &conf);
+	const struct trial *own = &at->trial[p->best], *best = &at->trial[posterior.best];
+	const bool other = ellipse_apart(&best->e, &own->e) > tolerance * own->e.a || moved(rim, own, &conf);
+	const double gross = other ? 1 : fmax(posterior.gross, 1 / (1 + exp(own->log_odds)));
 	free(at);
-	return other ? 1 : posterior.gross;
+	return gross;
 }
 
 double posterior_taken_at(const struct posterior *p, const struct rim *rim, const struct trials *t)
 {
 	for (int i = 0; i < ODDS_CURVE; i++) {
 		const double tolerance = odds_tolerance[i];
-		if (tolerance > t->conf->tolerance && tolerance <= t->conf->rough_tolerance && gross_at(p, rim, t, tolerance) <= t->conf->max_gross)
+		if (tolerance > t->conf->tolerance && tolerance <= t->conf->rough_tolerance && gross_at(p, rim, t, tolerance) <= fmax(t->conf->rough_gross, t->conf->max_gross))
 			return tolerance;
 	}
 	return 0;

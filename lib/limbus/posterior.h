@@ -16,8 +16,8 @@ bool trial_repeats(const struct trials *trials, int i);
  * each by its chance, and to gross where the full measurement is another ellipse than the trial was. */
 void posterior_settle(struct posterior *posterior, struct rim *rim, const struct trials *trials);
 
-/* The least tolerance above conf->tolerance, of odds_tolerance and at most conf->rough_tolerance, at which the same trial would be accepted, its full
- * measurement being rim; 0: none. */
+/* The least tolerance above conf->tolerance, of odds_tolerance and at most conf->rough_tolerance, from which the answer, the full measurement rim of the likeliest
+ * trial, is farther off with a chance of conf->rough_gross at most; 0: none. */
 double posterior_taken_at(const struct posterior *posterior, const struct rim *rim, const struct trials *trials);
 
 #endif

@@ -48,6 +48,7 @@ int main(int argc, char **argv)
 		PUPIL_OPTS(&o.find.pupil),
 		OPT_REAL("tolerance", &o.find.tolerance, 0.01, 0.06, "", "share of the semi-axis: what is farther off is a gross error"),
 		OPT_REAL("rough_tolerance", &o.find.rough_tolerance, 0.01, 0.06, "", "the widest to which a refused ellipse may be known"),
+		OPT_REAL("rough_gross", &o.find.rough_gross, 0.001, 0.5, "", "chance of being farther off than that, beyond which it is not known so"),
 		OPT_REAL("rough_used", &o.rough_used, 0, 0.06, "", "to which one must be, to be used where no photograph of the eye is better; 0: never"),
 		OPT_REAL("max_gross", &o.find.max_gross, 0.001, 1, "", "chance of a gross error, beyond which it is refused"),
 		OPT_REAL("sure_gross", &o.find.sure_gross, 0, 1, "", "chance below which votes of edges are not asked"),

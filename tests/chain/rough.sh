@@ -22,6 +22,7 @@ same "and its record, beside the other eye's" "$(said right status) $(said left 
 check "it is off by less than it says" within right
 check "both irises are made" test -s "$face/work/iris/texture.exr" -a -s "$face/work/iris_right/texture.exr"
 check "the page says so" grep -q 'A rough fit, for want of a better' "$face/work/review/index.html"
+same "once beside its rendering, once beside the photograph; of the other eye nothing of the kind" "$(grep -c 'A rough fit' "$face/work/review/index.html")" 2
 mkdir -p "$root/batch"
 printf 'face\0' | "$BIN/summary" --capture="$root" --collect >"$log" 2>&1
 check "a table of many captures tells it as a doubt" grep -q 'portrait.right: known to 3 % only' "$root/batch/summary.json"

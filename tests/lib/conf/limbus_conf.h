@@ -21,7 +21,7 @@ static struct limbus_conf limbus_defaults = {
 	.same = { .sigmas = 3, .most = 0.05, .unseen = 0.08, .other_eye = 1, .moved = 0.5 },
 	.hand = { .close = 0.12, .seen = 0.2 },
 	.region_sigma = 0.03, .region_shape_sigma = 0.02, .region_hidden = 1.2, .strip_sigma = 0.005, .strip_conf = { 6, 30, 100, 0.02, 0.3, 0.3, 4, { 0.5, 0.5 }, { 0.3, 0.1 } },
-	.tolerance = 0.02, .rough_tolerance = 0.06, .max_gross = 0.035, .sure_gross = 0.02, .max_rms = 0.008,
+	.tolerance = 0.02, .rough_tolerance = 0.06, .rough_gross = 0.05, .max_gross = 0.035, .sure_gross = 0.02, .max_rms = 0.008,
 	.hint_sigma = 0.08, .drawn_sigma = 0.01, .max_over = 0.6, .min_level = 0.04,
 };
 
