@@ -101,6 +101,24 @@ static void turn_to(struct pose *pose, double theta, const struct eye *eye)
 	pose->theta = theta;
 }
 
+/* Height over width of a circle that is tilted towards phi, weak perspective. */
+static double foreshortened(double theta, double phi)
+{
+	const double less = 1 - cos(theta);
+	return (1 - less * pow(sin(phi), 2)) / (1 - less * pow(cos(phi), 2));
+}
+
+/* The tilt that is least far from both poses, where their chances are alike and the picture could as well be that of an eye that is not tilted: of the two hills that
+ * a tilt then has, one to either side, neither is more than a slope of one round the front. Where it cannot be, they are two, and the likelier one stays. sigma: in: of
+ * the tilt on its side; out: root mean square distance from both, sigma_square: of the seen tilt's square, margin: the likelier one's log odds. */
+static double between_poses(double *sigma, double theta, double seen, double sigma_square, double margin)
+{
+	const double other = 1 / (1 + exp(margin)), front = pow(seen * seen / fmax(sigma_square, 1e-12), 2), one_hill = exp(-0.5 * front);
+	const double mean = theta * (1 - 2 * one_hill * other);
+	*sigma = sqrt(*sigma * *sigma + one_hill * ((1 - other) * pow(theta - mean, 2) + other * pow(theta + mean, 2)));
+	return mean;
+}
+
 /* The pose were the aspect another. */
 static bool moved_pose(struct pose *pose, double aspect, const struct limbus_joint *joint, const struct limbus_record *record, const struct eye *eye,
                        struct err *err)
@@ -151,6 +169,9 @@ bool limbus_joint_pose(struct pose *pose, const struct limbus_joint *joint, cons
 	const double towards = pose->phi, seen = pose->theta;
 	rice_tilt(&theta, &pose->theta_sigma, seen, sigma, joint->pose.tilt_sigma);
 	pose->theta_sigma = fmax(pose->theta_sigma, rice_astray(theta, seen, towards, cov, joint->pose.tilt_sigma));
+	theta = between_poses(&pose->theta_sigma, theta, seen, sigma, pose->margin);
+	if (joint->aspect.sigma > 0)
+		pose->aspect *= foreshortened(pose->theta, towards) / foreshortened(theta, towards);
 	turn_to(pose, theta, eye);
 	return add_rivals(pose, joint, record, eye, err);
 }

@@ -56,16 +56,16 @@ static double percent(int part, int of)
 static void table(int n, const struct split *s)
 {
 	for (int m = 0; m < s->methods; m++) {
-		printf("%s\n%-36s %5s %7s %7s %7s %8s %11s %9s %10s %9s %11s %7s %7s %11s %10s\n", names[m], "", "n", "right", "to 5 %", "WRONG", "refused", "half: found", "median px",
-		       "90% err/sg", "tilt deg", "90% tilt/sg", "rough", "off", "half: rough", "90% err/sg");
+		printf("%s\n%-36s %5s %7s %7s %7s %8s %11s %9s %10s %9s %11s %7s %7s %11s %10s %11s\n", names[m], "", "n", "right", "to 5 %", "WRONG", "refused", "half: found", "median px",
+		       "90% err/sg", "tilt deg", "90% tilt/sg", "rough", "off", "half: rough", "90% err/sg", "90% tilt/sg");
 		for (int b = 0; b < TALLY_BINS; b++) {
 			const struct tally t = tally_make(n, s->outcome, m, b);
 			if (t.n == 0)
 				continue;
-			printf("%-36s %5d %6.1f%% %6.1f%% %6.1f%% %7.1f%% %10.1f%% %9.3f %10.2f %9.2f %11.2f %6.1f%% %6.1f%% %10.1f%% %10.2f\n", tally_bin[b], t.n,
+			printf("%-36s %5d %6.1f%% %6.1f%% %6.1f%% %7.1f%% %10.1f%% %9.3f %10.2f %9.2f %11.2f %6.1f%% %6.1f%% %10.1f%% %10.2f %11.2f\n", tally_bin[b], t.n,
 			       percent(t.right, t.n), percent(t.near, t.n),
 			       percent(t.wrong, t.n), percent(t.refused, t.n), percent(t.half_found, t.half), t.median_px, t.ratio90, t.tilt_median, t.tilt_ratio90,
-			       percent(t.rough, t.n), percent(t.rough_off, t.n), percent(t.half_rough, t.half), t.rough_ratio90);
+			       percent(t.rough, t.n), percent(t.rough_off, t.n), percent(t.half_rough, t.half), t.rough_ratio90, t.rough_tilt_ratio90);
 		}
 	}
 }

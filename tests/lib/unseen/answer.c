@@ -59,10 +59,17 @@ static void fill(struct answer *out, const struct limbus_record *record)
 	out->weak = acos(fmin(out->e.b / out->e.a, 1));
 }
 
-static void tilt(struct answer *out, const struct pose *pose)
+/* The pose of one that is ok, or known roughly, as the stage takes it. */
+static void tilt(struct answer *out, struct limbus_record *record, const struct eye *eye, const struct pose_conf *conf)
 {
-	out->theta = pose->theta;
-	out->theta_sigma = pose->theta_sigma;
+	struct limbus_joint joint;
+	struct pose pose;
+	struct err err = { 0 };
+	record->ok = record->ok || record->rough > 0;
+	if (!record->ok || !limbus_joint(&joint, 1, record, eye, conf, &err) || !limbus_joint_pose(&pose, &joint, record, eye, &err))
+		return;
+	out->theta = pose.theta;
+	out->theta_sigma = pose.theta_sigma;
 }
 
 static const struct camera_keys no_keys = { .focal_px = NAN, .focal_mm = NAN, .sensor_mm = NAN, .center_px = { NAN, NAN } };
@@ -73,16 +80,12 @@ void answer_ours(struct answer *out, const struct photo *photo, double aspect)
 	const struct limbus_camera known = { .keys = &no_keys, .focal_px = NAN };
 	const struct pose_conf pose_conf = pose_conf_of();
 	struct limbus_record *record = mem_new(1, sizeof *record);
-	struct limbus_joint joint;
-	struct pose pose;
-	struct err err = { 0 };
 	*out = (struct answer){ .theta = NAN, .theta_sigma = NAN, .weak = NAN };
 	const double start = now();
 	limbus_measure_photo(record, photo, 0, 0, &known, &eye, &limbus_defaults, &pose_conf);
 	out->seconds = now() - start;
 	fill(out, record);
-	if (record->ok && limbus_joint(&joint, 1, record, &eye, &pose_conf, &err) && limbus_joint_pose(&pose, &joint, record, &eye, &err))
-		tilt(out, &pose);
+	tilt(out, record, &eye, &pose_conf);
 	free(record);
 }
 
@@ -93,9 +96,6 @@ int answer_face(struct answer out[2], const struct photo *photo, double aspect, 
 	const struct limbus_mark unmarked[2] = { 0 };
 	const struct pose_conf pose_conf = pose_conf_of();
 	struct limbus_record *record = mem_new(2, sizeof *record);
-	struct limbus_joint joint;
-	struct pose pose;
-	struct err err = { 0 };
 	for (int s = 0; s < 2; s++)
 		out[s] = (struct answer){ .theta = NAN, .theta_sigma = NAN, .weak = NAN };
 	const double start = now();
@@ -103,8 +103,7 @@ int answer_face(struct answer out[2], const struct photo *photo, double aspect, 
 	out[0].seconds = out[1].seconds = now() - start;
 	for (int s = 0; s < n; s++) {
 		fill(&out[s], &record[s]);
-		if (record[s].ok && limbus_joint(&joint, 1, &record[s], &eye, &pose_conf, &err) && limbus_joint_pose(&pose, &joint, &record[s], &eye, &err))
-			tilt(&out[s], &pose);
+		tilt(&out[s], &record[s], &eye, &pose_conf);
 	}
 	free(record);
 	return n;

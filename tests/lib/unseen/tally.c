@@ -66,7 +66,7 @@ struct verdict verdict_of(const struct answer *a, const struct unseen *u)
 	const double off[4] = { a->e.cx - t->cx, a->e.cy - t->cy, a->e.a - t->a, a->e.b - t->b };
 	for (int k = 0; k < 4; k++)
 		v.ratio[k] = a->sigma[k] > 0 ? fabs(off[k]) / a->sigma[k] : NAN;
-	if (u->leans || !a->ok)
+	if (u->leans)
 		return v;
 	v.tilt = fabs(a->theta - eye->theta) / DEG;
 	v.tilt_ratio = fabs(a->theta - eye->theta) / a->theta_sigma;
@@ -87,7 +87,7 @@ static void push(double *x, int *n, double value)
 
 struct tally tally_make(int n, const struct outcome *o, int method, int bin)
 {
-	enum { ERROR, RATIO, ROUGH_RATIO, TILT_RATIO, TILT, WEAK, SECONDS, LISTS };
+	enum { ERROR, RATIO, ROUGH_RATIO, ROUGH_TILT_RATIO, TILT_RATIO, TILT, WEAK, SECONDS, LISTS };
 	double *list[LISTS];
 	int of[LISTS] = { 0 };
 	struct tally t = { 0 };
@@ -114,7 +114,7 @@ struct tally tally_make(int n, const struct outcome *o, int method, int bin)
 		push(list[ERROR], &of[ERROR], v->right ? v->error : NAN);
 		for (int k = 0; k < 4; k++)
 			push(list[v->ok ? RATIO : ROUGH_RATIO], &of[v->ok ? RATIO : ROUGH_RATIO], v->ok || rough ? v->ratio[k] : NAN);
-		push(list[TILT_RATIO], &of[TILT_RATIO], v->ok ? v->tilt_ratio : NAN);
+		push(list[v->ok ? TILT_RATIO : ROUGH_TILT_RATIO], &of[v->ok ? TILT_RATIO : ROUGH_TILT_RATIO], v->ok || rough ? v->tilt_ratio : NAN);
 		push(list[TILT], &of[TILT], v->right ? v->tilt : NAN);
 		push(list[WEAK], &of[WEAK], v->right ? v->weak : NAN);
 		push(list[SECONDS], &of[SECONDS], v->seconds);
@@ -122,6 +122,7 @@ struct tally tally_make(int n, const struct outcome *o, int method, int bin)
 	t.median_px = quantile(of[ERROR], list[ERROR], 0.5);
 	t.ratio90 = quantile(of[RATIO], list[RATIO], 0.9);
 	t.rough_ratio90 = quantile(of[ROUGH_RATIO], list[ROUGH_RATIO], 0.9);
+	t.rough_tilt_ratio90 = quantile(of[ROUGH_TILT_RATIO], list[ROUGH_TILT_RATIO], 0.9);
 	t.tilt_ratio90 = quantile(of[TILT_RATIO], list[TILT_RATIO], 0.9);
 	t.tilt_median = quantile(of[TILT], list[TILT], 0.5);
 	t.weak_median = quantile(of[WEAK], list[WEAK], 0.5);

@@ -35,7 +35,7 @@ struct tally {
 	int rough, rough_off, half_rough;  // refused, but known to at most ANSWER_ROUGH; of these off by more than they say; of half-showing ones, not off
 	int pupils, pupils_wrong;                         // of the right ones
 	double median_px, ratio90, tilt_ratio90, tilt_median, weak_median;  // error px: of right ones; ratios: of all that are ok
-	double rough_ratio90;                             // of all that are known roughly
+	double rough_ratio90, rough_tilt_ratio90;         // of all that are known roughly
 	double seconds;                                   // median
 };
 

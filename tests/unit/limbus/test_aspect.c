@@ -8,7 +8,7 @@
 #include "tests/lib/unit.h"
 
 static const double DEG = M_PI / 180;
-static const double NOISE = 4e-3;  // sigma of the ellipse's parameters, semi-axes
+static const double NOISE = 4e-3, HIDDEN = 2e-2;  // sigma of the ellipse's parameters, semi-axes: all of it seen, half of it hidden
 
 static const struct pose_conf people = { .pupil_offset_sigma = 0.15, .depth_sigma = 0.25, .pupil_floor = 0.012, .aspect_mean = 0.925, .aspect_sigma = 0.025,
 	.roll_sigma = 4 * M_PI / 180, .tilt_sigma = 30 * M_PI / 180 };
@@ -21,8 +21,8 @@ static void axis_of(double z[3], double theta, double phi)
 	z[2] = cos(theta);
 }
 
-/* What a camera far away sees of an eye's limbus, with noise. axis: its z in the camera's frame, towards the photographer's back. */
-static void look(struct limbus_record *record, const double axis[3], double aspect, double roll, struct rng *noise)
+/* What a camera far away sees of an eye's limbus, with noise of so many semi-axes. axis: its z in the camera's frame, towards the photographer's back. */
+static void look(struct limbus_record *record, const double axis[3], double aspect, double roll, double share, struct rng *noise)
 {
 	enum { N = 48 };
 	struct fit fit = { .camera = { .focal_px = 20000, .center_px = { 800, 600 }, .source = CAMERA_CONF } };
@@ -39,7 +39,7 @@ static void look(struct limbus_record *record, const double axis[3], double aspe
 	}
 	*record = (struct limbus_record){ .ok = true, .view.camera = fit.camera };
 	assert_true(ellipse_fit_direct(&record->view.limbus, N, p, 0));
-	const double sigma = NOISE * record->view.limbus.a;
+	const double sigma = share * record->view.limbus.a;
 	ellipse_to_q(q, &record->view.limbus);
 	for (int i = 0; i < ELLIPSE_N; i++) {
 		q[i] += noise ? sigma * rng_normal(noise) : 0;
@@ -79,7 +79,7 @@ static void the_start_is_in_closed_form(void **state)
 				struct limbus_record record;
 				double axis[3], tilt, across;
 				axis_of(axis, theta * DEG, phi * DEG);
-				look(&record, axis, aspect, 0, 0);
+				look(&record, axis, aspect, 0, NOISE, 0);
 				struct ellipse e = record.view.limbus;
 				const double center[2] = { 800 - e.cx, 600 - e.cy };
 				e.cx = e.cy = 0;
@@ -99,7 +99,7 @@ static void both_hills_are_told(void **state)
 		struct pose pose;
 		double axis[3];
 		axis_of(axis, 10 * DEG, 80 * DEG);
-		look(&record, axis, 1, 0, 0);
+		look(&record, axis, 1, 0, NOISE, 0);
 		record.view.lean[1] = sure ? 60 : 12;  // half of it is what a tilt up is likelier than one aside
 		pose_of(&pose, &joint, 1, &record);
 		NEAR(joint.aspect.likeliest, 1, 0.03);
@@ -126,7 +126,7 @@ static void sigmas_hold(void **state)
 		const double theta = 30 * DEG * sqrt(rng_uniform(&rng)), phi = 2 * M_PI * rng_uniform(&rng);
 		const double aspect = people.aspect_mean + people.aspect_sigma * rng_normal(&rng), roll = people.roll_sigma * rng_normal(&rng);
 		axis_of(axis, theta, phi);
-		look(&record, axis, aspect, roll, &rng);
+		look(&record, axis, aspect, roll, NOISE, &rng);
 		pose_of(&pose, &joint, 1, &record);
 		for (int k = 0; k < 2; k++)
 			within[k] += astray(&pose, axis) < (k + 1) * pose.theta_sigma;
@@ -135,9 +135,56 @@ static void sigmas_hold(void **state)
 		fail_msg("of %d axes %d lie within a sigma, %d within two", EYES, within[0], within[1]);
 }
 
+/* People who look into the lens, as near to it as their optical axes are to their sight, lids over half of the limbus: nothing tells the two sides from each other. The
+ * answer is nearer to the truth than either pose, and says how near. */
+static void who_looks_into_the_lens_is_not_turned_aside(void **state)
+{
+	(void)state;
+	enum { EYES = 120 };
+	struct rng rng = { 5 };
+	double square[2] = { 0 };
+	int front = 0, within = 0;
+	for (int i = 0; i < EYES; i++) {
+		struct limbus_record record;
+		struct limbus_joint joint;
+		struct pose pose, alone;
+		struct err err = { 0 };
+		double axis[3];
+		axis_of(axis, 6 * DEG * sqrt(rng_uniform(&rng)), 2 * M_PI * rng_uniform(&rng));
+		const double aspect = people.aspect_mean + people.aspect_sigma * rng_normal(&rng), roll = people.roll_sigma * rng_normal(&rng);
+		look(&record, axis, aspect, roll, HIDDEN, &rng);
+		pose_of(&pose, &joint, 1, &record);
+		assert_true(limbus_pose(&alone, &record.view, &unknown, &joint.pose, &err));
+		const double off = between(pose.cam_from_eye, axis);
+		square[0] += pow(off, 2) / EYES;
+		square[1] += pow(between(alone.cam_from_eye, axis), 2) / EYES;
+		front += pose.theta < 2 * pose.theta_sigma;
+		within += off < 2 * pose.theta_sigma;
+	}
+	if (front < 0.9 * EYES || within < 0.9 * EYES || square[0] > 0.5 * square[1])
+		fail_msg("of %d eyes %d are within two sigmas of the front, %d of the truth; %.1f degrees off, by the likelier pose %.1f", EYES, front, within,
+		         sqrt(square[0]) / DEG, sqrt(square[1]) / DEG);
+}
+
+/* An eye that looks far aside has a side, though nothing tells which. */
+static void who_looks_aside_is(void **state)
+{
+	(void)state;
+	for (double theta = 20; theta <= 40; theta += 10) {
+		struct limbus_record record;
+		struct limbus_joint joint;
+		struct pose pose;
+		double axis[3];
+		axis_of(axis, theta * DEG, 15 * DEG);
+		look(&record, axis, people.aspect_mean, 0, NOISE, 0);
+		pose_of(&pose, &joint, 1, &record);
+		assert_true(pose.theta > 0.6 * theta * DEG && astray(&pose, axis) < 2 * pose.theta_sigma);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = { cmocka_unit_test(the_start_is_in_closed_form), cmocka_unit_test(both_hills_are_told),
-		cmocka_unit_test(sigmas_hold) };
+		cmocka_unit_test(sigmas_hold), cmocka_unit_test(who_looks_into_the_lens_is_not_turned_aside), cmocka_unit_test(who_looks_aside_is) };
 	return cmocka_run_group_tests(tests, 0, 0);
 }
