@@ -19,7 +19,8 @@ bool limbus_joint(struct limbus_joint *joint, int n, const struct limbus_record 
                   const struct pose_conf *conf, struct err *err);
 
 /* The pose of one record that is ok, under the shared aspect. theta_sigma includes the aspect's uncertainty: the pose is fitted
- * again at one sigma more, and at its rivals. False, err set, when no pose fits. */
+ * again at one sigma more, and at its rivals. Where the picture could be one from in front the tilt is the mean of both poses', by their
+ * chances, and theta_sigma the distance from both. False, err set, when no pose fits. */
 bool limbus_joint_pose(struct pose *pose, const struct limbus_joint *joint, const struct limbus_record *record,
                        const struct eye *eye, struct err *err);
 
