@@ -108,12 +108,14 @@ static double foreshortened(double theta, double phi)
 	return (1 - less * pow(sin(phi), 2)) / (1 - less * pow(cos(phi), 2));
 }
 
-/* The tilt that is least far from both poses, where their chances are alike and the picture could as well be that of an eye that is not tilted: of the two hills that
- * a tilt then has, one to either side, neither is more than a slope of one round the front. Where it cannot be, they are two, and the likelier one stays. sigma: in: of
- * the tilt on its side; out: root mean square distance from both, sigma_square: of the seen tilt's square, margin: the likelier one's log odds. */
-static double between_poses(double *sigma, double theta, double seen, double sigma_square, double margin)
+/* A shape has two poses, tilted by theta to either side. As far as the picture could be that of an eye from in front, the posterior is one hill round the front, and the
+ * tilt is its mean: both poses by their chances. Where it could not, there are two hills, and the tilt stays on the likelier one.
+ * sigma  in: of theta on its own side; out: root mean square distance from the posterior
+ * seen   the tilt as it was measured; square_sigma: sigma of its square
+ * margin log odds of the likelier pose */
+static double between_poses(double *sigma, double theta, double seen, double square_sigma, double margin)
 {
-	const double other = 1 / (1 + exp(margin)), front = pow(seen * seen / fmax(sigma_square, 1e-12), 2), one_hill = exp(-0.5 * front);
+	const double other = 1 / (1 + exp(margin)), one_hill = exp(-0.5 * pow(seen * seen / fmax(square_sigma, 1e-12), 2));
 	const double mean = theta * (1 - 2 * one_hill * other);
 	*sigma = sqrt(*sigma * *sigma + one_hill * ((1 - other) * pow(theta - mean, 2) + other * pow(theta + mean, 2)));
 	return mean;

@@ -134,7 +134,7 @@ double posterior_taken_at(const struct posterior *p, const struct rim *rim, cons
 {
 	for (int i = 0; i < ODDS_CURVE; i++) {
 		const double tolerance = odds_tolerance[i];
-		if (tolerance > t->conf->tolerance && tolerance <= t->conf->rough_tolerance && gross_at(p, rim, t, tolerance) <= fmax(t->conf->rough_gross, t->conf->max_gross))
+		if (tolerance > t->conf->tolerance && tolerance <= t->conf->rough_tolerance && gross_at(p, rim, t, tolerance) <= t->conf->rough_gross)
 			return tolerance;
 	}
 	return 0;
