@@ -5,6 +5,7 @@
 
 #include "base/mem.h"
 #include "limbus/hand.h"
+#include "limbus/opening.h"
 #include "limbus/posterior.h"
 #include "limbus/refuse.h"
 #include "math/stats.h"
@@ -170,6 +171,7 @@ void limbus_find_pupil(struct limbus_found *found, const struct trials *trials)
 	found->has_pupil = false;
 	if (limbus_usable(found) && (evidence || evidence_window(&own, conf->net, trials->photo, e->cx, e->cy, e->a, &err))) {
 		evidence = evidence ? evidence : &own;
+		opening_reach(found->reach, evidence, e, trials->photo->width);
 		found->has_pupil = occlusion_read(occlusion, conf->occlusion, trials->photo, evidence, e, &err)
 		                   && limbus_pupil_told(&found->pupil, trials->photo, trials->pyramid, e, evidence, occlusion, &conf->rim, &conf->pupil);
 	}

@@ -95,6 +95,7 @@ struct limbus_found {
 	struct rim limbus, pupil;
 	bool has_pupil;
 	struct band band;
+	double reach[2];   // opening.h
 	struct posterior posterior;
 };
 
@@ -117,7 +118,7 @@ struct trials;
 /* The same on trials that hold none yet (trial.h), without a pupil; they hold what was tried afterwards. */
 void limbus_find_in(struct limbus_found *found, struct trials *trials, const double *hint);
 
-/* The pupil of an eye that is usable. trials: those among which it was found, or none where a person says where it is. */
+/* The pupil of an eye that is usable, and where between its lids it lies. trials: those among which it was found, or none where a person says where it is. */
 void limbus_find_pupil(struct limbus_found *found, const struct trials *trials);
 
 /* Measures the likeliest of the trials, as found->posterior has it, in full; refuses what is doubtful. */

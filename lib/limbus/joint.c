@@ -8,6 +8,12 @@
 #include "limbus/rice.h"
 #include "math/vec.h"
 
+double limbus_joint_level(const struct limbus_record *one, const struct limbus_record *other)
+{
+	const double x = other->view.limbus.cx - one->view.limbus.cx, y = other->view.limbus.cy - one->view.limbus.cy;
+	return x >= 0 ? atan2(y, x) : atan2(-y, -x);
+}
+
 bool limbus_joint(struct limbus_joint *joint, int n, const struct limbus_record records[n], const struct eye *eye,
                   const struct pose_conf *conf, struct err *err)
 {
@@ -60,7 +66,7 @@ static void shape_cov(double cov[2][2], const struct pose *pose, const struct po
 				for (int b = 2; b < ELLIPSE_N; b++)
 					m[i][j] += jac[i][a] * jac[j][b] * view->cov_q[a][b];
 	const double oval = (1 - conf->aspect_mean) / (1 + conf->aspect_mean);
-	add_outer(m, (double[2]){ 0, 2 * oval * conf->roll_sigma });
+	add_outer(m, (double[2]){ -2 * oval * conf->roll_sigma * sin(2 * view->level), 2 * oval * conf->roll_sigma * cos(2 * view->level) });
 	// along the vector and across it
 	const double root = fmax(tan(pose->theta / 2), 1e-3), theta = fmax(pose->theta, 2e-3);
 	const double along = 2 * theta / (root * (1 + root * root)), across = pow(theta / root, 2), c = cos(2 * pose->phi), s = sin(2 * pose->phi);
@@ -74,18 +80,19 @@ static void shape_cov(double cov[2][2], const struct pose *pose, const struct po
 		}
 }
 
-/* Turns the eye about the centre of its limbus until it is tilted by theta, the same way. */
-static void turn_to(struct pose *pose, double theta, const struct eye *eye)
+/* Turns the eye about the centre of its limbus until it is tilted by theta towards phi. */
+static void turn_to(struct pose *pose, double theta, double phi, const struct eye *eye)
 {
 	double z[3], sight[3], aside[3], turn[3][3], R[3][3], was[3][3];
 	for (int i = 0; i < 3; i++) {
 		memcpy(was[i], pose->cam_from_eye[i], sizeof was[i]);
 		z[i] = was[i][2];
 		sight[i] = pose->cam_from_eye[i][3] + eye_limbus_depth(eye) * z[i];
+		aside[i] = was[i][0] * cos(phi) + was[i][1] * sin(phi);
 	}
 	const double center[3] = { sight[0], sight[1], sight[2] };
 	vec_unit(sight, sight);
-	vec_add(aside, z, -vec_dot(z, sight), sight);
+	vec_add(aside, aside, -vec_dot(aside, sight), sight);
 	if (!(vec_norm(aside) > 1e-9))
 		return;
 	vec_unit(aside, aside);
@@ -99,26 +106,54 @@ static void turn_to(struct pose *pose, double theta, const struct eye *eye)
 		pose->cam_from_eye[i][3] = center[i] - eye_limbus_depth(eye) * to[i];
 	}
 	pose->theta = theta;
+	pose->phi = phi < 0 ? phi + 2 * M_PI : phi;
 }
 
-/* Height over width of a circle that is tilted towards phi, weak perspective. */
+/* Height over width of a circle that is tilted towards phi, against what is level, weak perspective. */
 static double foreshortened(double theta, double phi)
 {
 	const double less = 1 - cos(theta);
 	return (1 - less * pow(sin(phi), 2)) / (1 - less * pow(cos(phi), 2));
 }
 
-/* A shape has two poses, tilted by theta to either side. As far as the picture could be that of an eye from in front, the posterior is one hill round the front, and the
- * tilt is its mean: both poses by their chances. Where it could not, there are two hills, and the tilt stays on the likelier one.
- * sigma  in: of theta on its own side; out: root mean square distance from the posterior
- * seen   the tilt as it was measured; square_sigma: sigma of its square
- * margin log odds of the likelier pose */
-static double between_poses(double *sigma, double theta, double seen, double square_sigma, double margin)
+/* As far as the picture could be that of an eye from in front, the posterior is one hill round the front, and the tilt is its mean. Where it could not, there are two hills, one to
+ * either side, and the tilt stays on the likelier one. seen: the tilt as it was measured; square_sigma: sigma of its square. */
+static double one_hill(double seen, double square_sigma)
 {
-	const double other = 1 / (1 + exp(margin)), one_hill = exp(-0.5 * pow(seen * seen / fmax(square_sigma, 1e-12), 2));
-	const double mean = theta * (1 - 2 * one_hill * other);
-	*sigma = sqrt(*sigma * *sigma + one_hill * ((1 - other) * pow(theta - mean, 2) + other * pow(theta + mean, 2)));
+	return exp(-0.5 * pow(seen * seen / fmax(square_sigma, 1e-12), 2));
+}
+
+/* The tilt of an eye alone: both poses by their chances.
+ * sigma  in: of theta on its own side; out: root mean square distance from the posterior
+ * margin log odds of the likelier pose */
+static double between_poses(double *sigma, double theta, double margin, double one)
+{
+	const double other = 1 / (1 + exp(margin)), mean = theta * (1 - 2 * one * other);
+	*sigma = sqrt(*sigma * *sigma + one * ((1 - other) * pow(theta - mean, 2) + other * pow(theta + mean, 2)));
 	return mean;
+}
+
+/* The same of one of the two eyes of a face, by what the other one says of it. */
+static double between_eyes(double *sigma, double *phi, const struct fellow_said *said, double one)
+{
+	double mean[2];
+	for (int i = 0; i < 2; i++)
+		mean[i] = said->hill[i] + one * (said->all[i] - said->hill[i]);
+	*sigma = sqrt(pow(said->hill_sigma, 2) + one * (pow(said->all_sigma, 2) - pow(said->hill_sigma, 2)));
+	*phi = atan2(mean[1], mean[0]);
+	return hypot(mean[0], mean[1]);
+}
+
+/* The other pose becomes the one that is kept. */
+static void take_other(struct pose *pose)
+{
+	const struct pose was = *pose;
+	memcpy(pose->cam_from_eye, was.other_cam_from_eye, sizeof was.cam_from_eye);
+	memcpy(pose->other_cam_from_eye, was.cam_from_eye, sizeof was.cam_from_eye);
+	pose->theta = was.other_theta;
+	pose->phi = was.other_phi;
+	pose->other_theta = was.theta;
+	pose->other_phi = was.phi;
 }
 
 /* The pose were the aspect another. */
@@ -149,14 +184,22 @@ static bool add_rivals(struct pose *pose, const struct limbus_joint *joint, cons
 	return true;
 }
 
-bool limbus_joint_pose(struct pose *pose, const struct limbus_joint *joint, const struct limbus_record *record,
-                       const struct eye *eye, struct err *err)
+/* The likelier pose, and what the picture tells of its tilt. square_sigma: of the tilt's square, by all that the pose rests on. */
+static bool tell(struct fellow_tilt *tilt, struct pose *pose, double *square_sigma, const struct limbus_joint *joint, const struct limbus_record *record,
+                 const struct eye *eye, struct err *err)
 {
 	if (!limbus_pose(pose, &record->view, eye, &joint->pose, err))
 		return false;
-	// of the square of the tilt, which is what a shape tells: by all that the pose rests on, and by the ellipse's covariance
-	double sigma = rice_square_sigma(pose->theta, pose->theta_sigma), cov[2][2], theta;
-	shape_cov(cov, pose, &record->view, &joint->pose);
+	*tilt = (struct fellow_tilt){ .seen = pose->theta, .towards = pose->phi, .prior = joint->pose.tilt_sigma, .level = record->view.level, .radius = eye->limbus_radius };
+	memcpy(tilt->reach, record->view.reach, sizeof tilt->reach);
+	tilt->margin = pose->margin;
+	if (isfinite(pose->margin))
+		tilt->margin -= pose_opening(&record->view, pose->theta, pose->phi, eye, &joint->pose) - pose_opening(&record->view, pose->other_theta, pose->other_phi, eye, &joint->pose);
+	tilt->margin = fmin(tilt->margin, 100);
+	*square_sigma = rice_square_sigma(pose->theta, pose->theta_sigma);
+	shape_cov(tilt->cov, pose, &record->view, &joint->pose);
+	for (int i = 0; i < 3; i++)
+		tilt->place[i] = pose->cam_from_eye[i][3] + eye_limbus_depth(eye) * pose->cam_from_eye[i][2];
 	if (joint->aspect.sigma > 0) {
 		struct pose other;
 		double v[2], w[2];
@@ -164,17 +207,48 @@ bool limbus_joint_pose(struct pose *pose, const struct limbus_joint *joint, cons
 			return false;
 		shape_of(v, pose);
 		shape_of(w, &other);
-		add_outer(cov, (double[2]){ w[0] - v[0], w[1] - v[1] });
-		sigma = hypot(sigma, hypot(w[0] - v[0], w[1] - v[1]));
+		for (int i = 0; i < 2; i++)
+			tilt->shift[i] = w[i] - v[i];
+		*square_sigma = hypot(*square_sigma, hypot(tilt->shift[0], tilt->shift[1]));
 		pose->aspect_sigma = aspect_spread(&joint->aspect);
 	}
-	const double towards = pose->phi, seen = pose->theta;
-	rice_tilt(&theta, &pose->theta_sigma, seen, sigma, joint->pose.tilt_sigma);
-	pose->theta_sigma = fmax(pose->theta_sigma, rice_astray(theta, seen, towards, cov, joint->pose.tilt_sigma));
-	theta = between_poses(&pose->theta_sigma, theta, seen, sigma, pose->margin);
+	return true;
+}
+
+bool limbus_joint_tilt(struct fellow_tilt *tilt, const struct limbus_joint *joint, const struct limbus_record *record, const struct eye *eye, struct err *err)
+{
+	struct pose pose;
+	double sigma;
+	return tell(tilt, &pose, &sigma, joint, record, eye, err);
+}
+
+bool limbus_joint_pose(struct pose *pose, const struct limbus_joint *joint, const struct limbus_record *record, const struct fellow_tilt *other,
+                       const struct eye *eye, struct err *err)
+{
+	struct fellow_tilt tilt;
+	struct fellow_said said;
+	double sigma, cov[2][2], theta;
+	if (!tell(&tilt, pose, &sigma, joint, record, eye, err))
+		return false;
+	const bool both = other && fellow_tilt_of(&said, &tilt, other, &joint->pose.fellow, &joint->pose.opening);
+	if (both)
+		pose->margin = said.margin;
+	if (both && said.turned && isfinite(pose->other_theta) && pose->other_theta > 0)
+		take_other(pose);
+	double towards = pose->phi;
+	const double seen = pose->theta, one = one_hill(seen, sigma), from = towards;
+	if (both && said.resolved)
+		theta = between_eyes(&pose->theta_sigma, &towards, &said, one);
+	else {
+		memcpy(cov, tilt.cov, sizeof cov);
+		add_outer(cov, tilt.shift);
+		rice_tilt(&theta, &pose->theta_sigma, seen, sigma, joint->pose.tilt_sigma);
+		pose->theta_sigma = fmax(pose->theta_sigma, rice_astray(theta, seen, towards, cov, joint->pose.tilt_sigma));
+		theta = between_poses(&pose->theta_sigma, theta, pose->margin, one);
+	}
 	if (joint->aspect.sigma > 0)
-		pose->aspect *= foreshortened(pose->theta, towards) / foreshortened(theta, towards);
-	turn_to(pose, theta, eye);
+		pose->aspect *= foreshortened(seen, from - record->view.level) / foreshortened(theta, towards - record->view.level);
+	turn_to(pose, theta, towards, eye);
 	return add_rivals(pose, joint, record, eye, err);
 }
 

@@ -139,7 +139,7 @@ static bool residuals(void *ctx, const double *x, double *r, double *J)
 	r[R_PRIOR + 1] = x[DY] / p->conf->pupil_offset_sigma;
 	r[R_PRIOR + 2] = (x[DZ] - p->eye->iris_depth) / p->conf->depth_sigma;
 	r[R_PRIOR + 3] = (x[ASPECT] - p->conf->aspect_mean) / p->aspect_sigma;
-	r[R_PRIOR + 4] = x[ROLL] / p->roll_sigma;
+	r[R_PRIOR + 4] = (x[ROLL] - p->view->level) / p->roll_sigma;
 	return true;
 }
 
@@ -197,7 +197,7 @@ static void start(double *x, const struct problem *p, double tilt, double phi)
 	x[DX] = x[DY] = 0;
 	x[DZ] = p->eye->iris_depth;
 	x[ASPECT] = p->conf->aspect_mean;
-	x[ROLL] = 0;
+	x[ROLL] = p->view->level;
 }
 
 struct solution {
@@ -276,6 +276,12 @@ static void fill(struct pose *pose, const struct problem *p, const struct soluti
 	pose->iris_depth = s->x[DZ];
 }
 
+double pose_opening(const struct pose_view *view, double theta, double phi, const struct eye *eye, const struct pose_conf *conf)
+{
+	// phi is where the camera lies from the axis
+	return opening_known(view->reach, &conf->opening) ? log(opening_likelihood(view->reach, -theta * cos(phi - view->level), eye->limbus_radius, &conf->opening)) : 0;
+}
+
 bool limbus_pose(struct pose *pose, const struct pose_view *view, const struct eye *eye, const struct pose_conf *conf,
                  struct err *err)
 {
@@ -286,7 +292,7 @@ bool limbus_pose(struct pose *pose, const struct pose_view *view, const struct e
 	double tilt, across;
 	struct ellipse e;
 	ellipse_from_q(&e, p.q);
-	limbus_tilt(&tilt, &across, &e, p.center, p.focal, conf->aspect_mean);
+	limbus_tilt(&tilt, &across, &e, p.center, p.focal, conf->aspect_mean, view->level);
 	tilt = fmax(tilt, 0.02);
 	struct solution s[2];
 	bool ok[2];
@@ -304,7 +310,8 @@ bool limbus_pose(struct pose *pose, const struct pose_view *view, const struct e
 			continue;
 		double m[4][4];
 		transform(m, &p, s[i].x);
-		s[i].cost += ramp_cost(view, m, eye) - (view->lean[0] * cos(phi) + view->lean[1] * sin(phi)) / 2;
+		s[i].cost += conf->side_trust * (ramp_cost(view, m, eye) - (view->lean[0] * cos(phi) + view->lean[1] * sin(phi)) / 2);
+		s[i].cost -= pose_opening(view, theta, phi, eye, conf);
 	}
 	int best = ok[0] && (!ok[1] || s[0].cost <= s[1].cost) ? 0 : 1;
 	*pose = (struct pose){ .theta_weak = acos(ratio), .margin = INFINITY };

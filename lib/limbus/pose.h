@@ -6,6 +6,8 @@
 #ifndef LIMBUS_POSE_H
 #define LIMBUS_POSE_H
 #include "anatomy/eye.h"
+#include "limbus/fellow.h"
+#include "limbus/opening.h"
 #include "math/ellipse.h"
 
 enum { POSE_RAMP = 360 };  // samples around the limbus
@@ -15,8 +17,11 @@ struct pose_conf {
 	double depth_sigma;         // mm: iris plane against eye.iris_depth_mm
 	double pupil_floor;         // an irregular margin: sigma of its centre, share of the pupil's semi-axis
 	double aspect_mean, aspect_sigma;  // prior of vertical / horizontal; sigma 0: declared
-	double roll_sigma;          // rad: of the limbus's axes against the picture's; 0: level
+	double roll_sigma;          // rad: of the limbus's axes against what is level; 0: level
 	double tilt_sigma;          // rad: of eyes round the front; 0: any direction of sight is as likely
+	double side_trust;          // what log likelihoods of ramp and lean count: light errs alike all round an eye, and they do not know it
+	struct opening_conf opening;
+	struct fellow_conf fellow;  // how alike both eyes of a face look
 };
 
 struct pose_view {
@@ -27,6 +32,8 @@ struct pose_view {
 	struct ellipse pupil;
 	double pupil_sigma;         // px, of its centre, each way
 	double ramp[POSE_RAMP];     // width of the limbal ramp at equal steps of the eccentric angle, px; 0: not known
+	double reach[2];            // how far what shows between the lids reaches to both sides, semi-axes (opening.h); 0: not known
+	double level;               // rad: of what is level for the head, against the picture's rows: the line through both eyes; 0: not known
 	double lean[2];             // log likelihood of a tilt towards +x, +y against the opposite (limbus/propose/lean.h); 0: unknown
 };
 
@@ -41,6 +48,9 @@ struct pose {
 	double aspect, aspect_sigma;
 	double pupil_offset[2], iris_depth;  // mm
 };
+
+/* Log likelihood, up to a constant, of a tilt of theta towards phi by where the limbus lies between the corners of the lids. */
+double pose_opening(const struct pose_view *view, double theta, double phi, const struct eye *eye, const struct pose_conf *conf);
 
 /* Fits the pose of one view. False, err set, when no pose fits or the ellipse is none after undoing the lens distortion. */
 bool limbus_pose(struct pose *pose, const struct pose_view *view, const struct eye *eye, const struct pose_conf *conf,

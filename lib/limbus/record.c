@@ -21,6 +21,7 @@ void limbus_record_fill(struct limbus_record *record, const struct limbus_found 
 	const struct rim *rim = &found->limbus;
 	record->view.limbus = rim->e;
 	memcpy(record->view.cov_q, rim->cov_q, sizeof rim->cov_q);
+	memcpy(record->view.reach, found->reach, sizeof found->reach);
 	record->view.has_pupil = found->has_pupil;
 	if (found->has_pupil) {
 		record->view.pupil = found->pupil.e;
@@ -83,6 +84,7 @@ bool limbus_record_save(const struct limbus_record *r, const char *path, const c
 		json_object_set_new(json, "pupil", r->view.has_pupil ? ellipse_json(&r->view.pupil) : json_null());
 		json_object_set_new(json, "ramp_px", json_numbers(POSE_RAMP, r->view.ramp));
 		json_object_set_new(json, "lean", json_numbers(2, r->view.lean));
+		json_object_set_new(json, "reach", json_numbers(2, r->view.reach));
 		json_object_set_new(json, "measured", json_numbers(6, measured));
 		json_object_set_new(json, "edge_px", json_numbers(2 * ARCS, &r->point[0][0]));
 		json_object_set_new(json, "edge_state", json_numbers(ARCS, state));
@@ -129,6 +131,7 @@ static bool record_read(struct limbus_record *r, const json_t *json, const char 
 	    || (r->view.has_pupil && !ellipse_read(&r->view.pupil, json, "pupil", path, err))
 	    || !json_get_array(r->view.ramp, POSE_RAMP, json, "ramp_px", path, err)
 	    || !json_get_array(r->view.lean, 2, json, "lean", path, err)
+	    || !json_get_array(r->view.reach, 2, json, "reach", path, err)
 	    || !json_get_array(measured, 6, json, "measured", path, err)
 	    || !json_get_array(&r->point[0][0], 2 * ARCS, json, "edge_px", path, err)
 	    || !json_get_array(state, ARCS, json, "edge_state", path, err))

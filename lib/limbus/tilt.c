@@ -12,19 +12,19 @@ void limbus_sight(double R[3][3], const double center[2], double focal)
 	mat_smallest_rotation(R, up, sight);
 }
 
-/* Foreshortening of an ellipse of that aspect seen as e: smaller over larger eigenvalue, and the angle of the smaller one's direction. */
-static void foreshortening(double *ratio, double *towards, const struct ellipse *e, double aspect)
+/* Foreshortening of an ellipse of that aspect, turned by level, seen as e: smaller over larger eigenvalue, and the angle of the smaller one's direction. */
+static void foreshortening(double *ratio, double *towards, const struct ellipse *e, double aspect, double level)
 {
-	const double c = cos(e->angle), s = sin(e->angle), aa = e->a * e->a, bb = e->b * e->b;
+	const double c = cos(e->angle - level), s = sin(e->angle - level), aa = e->a * e->a, bb = e->b * e->b;
 	const double xx = aa * c * c + bb * s * s, xy = aspect * (aa - bb) * c * s, yy = aspect * aspect * (aa * s * s + bb * c * c);
 	const double root = sqrt(fmax(xx * yy - xy * xy, 0));  // of a 2 x 2 matrix M: (M + root I), up to scale
 	const double fx = xx + root, fxy = xy / aspect, fy = (yy + root) / (aspect * aspect);
 	const double mean = (fx + fy) / 2, half = hypot((fx - fy) / 2, fxy);
 	*ratio = fmax(mean - half, 0) / (mean + half);
-	*towards = atan2(2 * fxy, fx - fy) / 2 + M_PI / 2;
+	*towards = atan2(2 * fxy, fx - fy) / 2 + M_PI / 2 + level;
 }
 
-void limbus_tilt(double *tilt, double *across, const struct ellipse *e, const double center[2], double focal, double aspect)
+void limbus_tilt(double *tilt, double *across, const struct ellipse *e, const double center[2], double focal, double aspect, double level)
 {
 	double R[3][3], m[3][3], k[6], s[3][3] = { 0 };
 	struct ellipse turned = *e;
@@ -45,6 +45,6 @@ void limbus_tilt(double *tilt, double *across, const struct ellipse *e, const do
 	if (!ellipse_from_conic(&turned, conic))  // seen from nearly beside: as it is
 		turned = *e;
 	double ratio;
-	foreshortening(&ratio, across, &turned, aspect);
+	foreshortening(&ratio, across, &turned, aspect, level);
 	*tilt = acos(fmin(ratio, 1));
 }

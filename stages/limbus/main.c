@@ -71,6 +71,13 @@ int main(int argc, char **argv)
 		OPT_REAL("aspect_mean", &o.pose.aspect_mean, 0.7, 1.2, "", "limbus: vertical / horizontal"),
 		OPT_REAL("aspect_sigma", &o.pose.aspect_sigma, 0.001, 0.2, "", "its spread among people"),
 		OPT_REAL("roll_sigma", &o.roll_sigma_deg, 0, 30, "deg", "of the limbus's axes against the picture's"),
+		OPT_REAL("side_trust", &o.pose.side_trust, 0, 1, "", "of what the limbus's ramp and the iris' brightness say of the side to which it is tilted"),
+		OPT_REAL("opening_arm", &o.pose.opening.arm, 1, 100, "mm", "from the limbus back to where it turns about, between the corners of the lids"),
+		OPT_REAL("opening_sigma", &o.opening_sigma_deg, 0, 90, "deg", "of the direction that its place between them tells; 0: not asked"),
+		OPT_REAL("opening_misled", &o.pose.opening.misled, 0.001, 1, "", "chance that it tells nothing"),
+		OPT_REALS("face_apart", o.face_apart_deg, 2, -45, 45, "deg", "optical axes of both eyes, where they diverge: mean, standard deviation"),
+		OPT_REAL("face_level_sigma", &o.face_level_deg, 0.1, 45, "deg", "of how far one looks higher than the other"),
+		OPT_REAL("face_squint", &o.pose.fellow.squint, 0, 1, "", "chance that both have nothing to do with each other"),
 		OPT_REAL("tilt_sigma", &o.tilt_sigma_deg, 1, 1000, "deg", "how far eyes look past the lens"),
 	};
 	stage_start(&stage, "limbus", "find limbus, pupil and pose in every photograph", argc, argv, COUNT(opts), opts);
@@ -79,6 +86,10 @@ int main(int argc, char **argv)
 	o.find.face.roll = o.face_roll_deg * M_PI / 180;
 	o.pose.roll_sigma = o.roll_sigma_deg * M_PI / 180;
 	o.pose.tilt_sigma = o.tilt_sigma_deg * M_PI / 180;
+	o.pose.opening.sigma = o.opening_sigma_deg * M_PI / 180;
+	o.pose.fellow.apart = o.face_apart_deg[0] * M_PI / 180;
+	o.pose.fellow.apart_sigma = fmax(o.face_apart_deg[1], 0.1) * M_PI / 180;
+	o.pose.fellow.level_sigma = o.face_level_deg * M_PI / 180;
 	bool ok = eye_check(&o.eye, &err) && capture_list(&capture, &stage, &o.photo_eye, &err);
 	ok = ok && limbus_measure(&kept, &stage, &capture, &o, &err) && limbus_fit_poses(&kept, &stage, &capture, &o, &err);
 	occlusion_close(o.find.occlusion);

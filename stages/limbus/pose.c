@@ -22,6 +22,8 @@ struct eye_work {
 	int n;                               // of this eye
 	const struct capture_photo **photo;  // [n]
 	struct limbus_record *record;        // [n]
+	char **path;                         // [n], of the records
+	const struct eye_work *all;          // of the capture's eyes
 	struct limbus_joint joint;
 	int usable;
 	struct limbus_kept *kept;
@@ -107,6 +109,28 @@ static void note(const struct eye_work *w, int i, const struct fit *fit, const s
 		              "to one side as well", name, pose->margin);
 }
 
+/* The other eye of a face's photograph, where it may be used: its eye's work, and which of its photographs. */
+static const struct eye_work *fellow_of(int *at, const struct eye_work *w, int i)
+{
+	const struct capture_photo *other = capture_fellow(w->capture, w->photo[i]);
+	for (int e = 0; other && e < w->capture->n_eyes; e++)
+		for (int k = 0; k < w->all[e].n; k++)
+			if (w->all[e].photo[k] == other && w->all[e].record[k].ok) {
+				*at = k;
+				return &w->all[e];
+			}
+	return 0;
+}
+
+static bool pose_of(struct pose *pose, const struct eye_work *w, int i, struct err *err)
+{
+	int at;
+	struct fellow_tilt tilt;
+	const struct eye_work *fellow = fellow_of(&at, w, i);
+	return (!fellow || limbus_joint_tilt(&tilt, &fellow->joint, &fellow->record[at], &w->o->eye, err))
+	       && limbus_joint_pose(pose, &w->joint, &w->record[i], fellow ? &tilt : 0, &w->o->eye, err);
+}
+
 static bool finish(struct eye_work *w, int i, int n_in, const char *const in[], struct err *err)
 {
 	const struct capture_photo *p = w->photo[i];
@@ -114,7 +138,7 @@ static bool finish(struct eye_work *w, int i, int n_in, const char *const in[], 
 	struct pose pose = { 0 };
 	if (!r->ok)
 		stage_warn(w->stage, "%s: rejected: %s", p->file, r->reason);
-	else if (!limbus_joint_pose(&pose, &w->joint, r, &w->o->eye, err))
+	else if (!pose_of(&pose, w, i, err))
 		return err_wrap(err, "%s", p->file);
 	if (r->ok && r->rough > 0)
 		stage_warn(w->stage, "%s: used roughly, for want of a better photograph of this eye: %s", p->file, r->reason);
@@ -156,32 +180,56 @@ static void take_rough(struct eye_work *w)
 	}
 }
 
-static bool fit_eye(struct eye_work *w, struct err *err)
+/* Reads what was measured, and takes what may be used. */
+static bool load(struct eye_work *w, struct err *err)
 {
-	char **paths = mem_new((size_t)w->n, sizeof *paths);
-	const char **in = mem_new((size_t)w->n + 1, sizeof *in);
 	bool ok = true;
 	for (int i = 0; i < w->n && ok; i++) {
-		paths[i] = limbus_record_path(w->photo[i]);
-		ok = limbus_record_load(&w->record[i], stage_path(w->stage, "%s", paths[i]), err);
+		w->path[i] = limbus_record_path(w->photo[i]);
+		ok = limbus_record_load(&w->record[i], stage_path(w->stage, "%s", w->path[i]), err);
 		w->usable += w->record[i].ok;
 	}
 	if (ok)
 		take_rough(w);
-	ok = ok && limbus_joint(&w->joint, w->n, w->record, &w->o->eye, &w->o->pose, err);
-	/* With the aspect fitted, every photograph of the eye is an input of each; and of one that may be used for want of a better. */
-	bool shared = !isfinite(w->o->eye.limbus_aspect) && w->usable >= 2;
+	return ok;
+}
+
+/* What all photographs of the eye share. */
+static bool share(struct eye_work *w, struct err *err)
+{
+	int at;
+	for (int i = 0; i < w->n; i++) {
+		const struct eye_work *fellow = w->record[i].ok ? fellow_of(&at, w, i) : 0;
+		if (fellow)
+			w->record[i].view.level = limbus_joint_level(&w->record[i], &fellow->record[at]);
+	}
+	return limbus_joint(&w->joint, w->n, w->record, &w->o->eye, &w->o->pose, err);
+}
+
+/* Photograph i's record; with the aspect fitted, those of all of the eye's photographs, and of one that may be used for want of a better. */
+static int inputs_of(const char *in[], const struct eye_work *w, int i)
+{
+	const bool shared = !isfinite(w->o->eye.limbus_aspect) && w->usable >= 2;
+	int n = 0;
+	for (int j = 0; j < w->n; j++)
+		if (shared || j == i || w->record[i].rough > 0)
+			in[n++] = w->path[j];
+	return n;
+}
+
+static bool fit_eye(struct eye_work *w, struct err *err)
+{
+	const char **in = mem_new(1 + 2 * (size_t)w->capture->n_photos, sizeof *in);
+	bool ok = true;
 	for (int i = 0; i < w->n && ok; i++) {
-		int n = 0;
+		int at, n = 0;
 		in[n++] = w->photo[i]->file;
-		for (int j = 0; j < w->n; j++)
-			if (shared || j == i || w->record[i].rough > 0)
-				in[n++] = paths[j];
+		n += inputs_of(in + n, w, i);
+		const struct eye_work *fellow = fellow_of(&at, w, i);
+		if (fellow)
+			n += inputs_of(in + n, fellow, at);
 		ok = finish(w, i, n, in, err);
 	}
-	for (int i = 0; i < w->n; i++)
-		free(paths[i]);
-	free(paths);
 	free(in);
 	return ok;
 }
@@ -189,19 +237,31 @@ static bool fit_eye(struct eye_work *w, struct err *err)
 bool limbus_fit_poses(struct limbus_kept *kept, struct stage *stage, const struct capture *capture, const struct limbus_options *o,
                       struct err *err)
 {
+	struct eye_work all[COUNT(capture->eyes)] = { 0 };
 	int usable = 0;
 	bool ok = true;
 	for (int e = 0; e < capture->n_eyes && ok; e++) {
-		struct eye_work w = { .stage = stage, .capture = capture, .o = o, .kept = kept };
-		w.photo = mem_new((size_t)capture->n_photos, sizeof *w.photo);
-		w.record = mem_new((size_t)capture->n_photos, sizeof *w.record);
+		struct eye_work *w = &all[e];
+		*w = (struct eye_work){ .stage = stage, .capture = capture, .o = o, .kept = kept, .all = all };
+		w->photo = mem_new((size_t)capture->n_photos, sizeof *w->photo);
+		w->record = mem_new((size_t)capture->n_photos, sizeof *w->record);
+		w->path = mem_new((size_t)capture->n_photos, sizeof *w->path);
 		for (int i = 0; i < capture->n_photos; i++)
 			if (capture->photos[i].eye == e)
-				w.photo[w.n++] = &capture->photos[i];
-		ok = fit_eye(&w, err);
-		usable += w.usable;
-		free(w.photo);
-		free(w.record);
+				w->photo[w->n++] = &capture->photos[i];
+		ok = load(w, err);
+		usable += w->usable;
+	}
+	for (int e = 0; e < capture->n_eyes && ok; e++)
+		ok = share(&all[e], err);
+	for (int e = 0; e < capture->n_eyes && ok; e++)
+		ok = fit_eye(&all[e], err);
+	for (int e = 0; e < capture->n_eyes; e++) {
+		for (int i = 0; i < all[e].n; i++)
+			free(all[e].path[i]);
+		free(all[e].path);
+		free(all[e].photo);
+		free(all[e].record);
 	}
 	if (ok && usable == 0)
 		return err_set(err, "photos/: none of the %d photographs can be used; the reasons are above", capture->n_photos);

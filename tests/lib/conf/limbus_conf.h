@@ -38,6 +38,8 @@ static void limbus_defaults_open(void)
 
 static const struct pose_conf pose_defaults = {
 	.pupil_offset_sigma = 0.15, .depth_sigma = 0.25, .pupil_floor = 0.012, .aspect_mean = 1, .aspect_sigma = 0,
+	.side_trust = 0.2, .opening = { .arm = 9.7, .sigma = 11 * M_PI / 180, .misled = 0.05 },
+	.fellow = { .apart = 6 * M_PI / 180, .apart_sigma = 5 * M_PI / 180, .level_sigma = 2 * M_PI / 180, .squint = 0.03 },
 };
 
 #endif

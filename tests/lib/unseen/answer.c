@@ -32,8 +32,8 @@ static double now(void)
 static struct pose_conf pose_conf_of(void)
 {
 	struct pose_conf conf = pose_defaults;
-	conf.aspect_mean = 0.925;
-	conf.aspect_sigma = 0.025;
+	conf.aspect_mean = 0.95;
+	conf.aspect_sigma = 0.035;
 	conf.roll_sigma = 4 * M_PI / 180;
 	conf.tilt_sigma = 30 * M_PI / 180;
 	return conf;
@@ -59,14 +59,17 @@ static void fill(struct answer *out, const struct limbus_record *record)
 	out->weak = acos(fmin(out->e.b / out->e.a, 1));
 }
 
-/* The pose of one that is ok, or known roughly, as the stage takes it. */
-static void tilt(struct answer *out, struct limbus_record *record, const struct eye *eye, const struct pose_conf *conf)
+/* The pose of one that is ok, or known roughly, as the stage takes it. other: of a face's other eye; null: there is none. */
+static void tilt(struct answer *out, struct limbus_record *record, const struct limbus_record *other, const struct eye *eye, const struct pose_conf *conf)
 {
-	struct limbus_joint joint;
+	struct limbus_joint joint, fellow;
+	struct fellow_tilt said;
 	struct pose pose;
 	struct err err = { 0 };
-	record->ok = record->ok || record->rough > 0;
-	if (!record->ok || !limbus_joint(&joint, 1, record, eye, conf, &err) || !limbus_joint_pose(&pose, &joint, record, eye, &err))
+	if (!record->ok || !limbus_joint(&joint, 1, record, eye, conf, &err))
+		return;
+	other = other && other->ok && limbus_joint(&fellow, 1, other, eye, conf, &err) && limbus_joint_tilt(&said, &fellow, other, eye, &err) ? other : 0;
+	if (!limbus_joint_pose(&pose, &joint, record, other ? &said : 0, eye, &err))
 		return;
 	out->theta = pose.theta;
 	out->theta_sigma = pose.theta_sigma;
@@ -85,7 +88,8 @@ void answer_ours(struct answer *out, const struct photo *photo, double aspect)
 	limbus_measure_photo(record, photo, 0, 0, &known, &eye, &limbus_defaults, &pose_conf);
 	out->seconds = now() - start;
 	fill(out, record);
-	tilt(out, record, &eye, &pose_conf);
+	record->ok = record->ok || record->rough > 0;
+	tilt(out, record, 0, &eye, &pose_conf);
 	free(record);
 }
 
@@ -103,7 +107,12 @@ int answer_face(struct answer out[2], const struct photo *photo, double aspect, 
 	out[0].seconds = out[1].seconds = now() - start;
 	for (int s = 0; s < n; s++) {
 		fill(&out[s], &record[s]);
-		tilt(&out[s], &record[s], &eye, &pose_conf);
+		record[s].ok = record[s].ok || record[s].rough > 0;
+	}
+	if (n == 2 && record[0].ok && record[1].ok)
+		record[0].view.level = record[1].view.level = limbus_joint_level(&record[0], &record[1]);
+	for (int s = 0; s < n; s++) {
+		tilt(&out[s], &record[s], n == 2 ? &record[1 - s] : 0, &eye, &pose_conf);
 	}
 	free(record);
 	return n;
