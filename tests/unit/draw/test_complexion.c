@@ -67,7 +67,7 @@ static void margin_at(double at[2], double out[2], double angle)
 /* Share of a pixel of mm at (x, y) that lashes hide. */
 static double hidden(double x, double y, double mm)
 {
-	enum { FINE = 4 };
+	enum { FINE = SANITISED ? 2 : 4 };
 	int in = 0;
 	if (!lash.n || hypot(fabs(x) - eye_x, y) > 22)
 		return 0;

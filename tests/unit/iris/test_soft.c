@@ -80,7 +80,7 @@ static void no_sclera_in_the_iris(void **state)
 	struct unrefract_conf without = conf;
 	without.haze = 0.5;
 	for (int k = 0; k < 2; k++)
-		for (int s = 0; s < 3; s++) {
+		for (int s = SANITISED ? 1 + k : 0; s < (SANITISED ? 2 + k : 3); s++) {
 			double filled, seen, was, all;
 			const double stray = s == 2 ? 0.15 : 0, kept = brightest(&filled, &seen, colour[k], sigmas[s] * radius, stray, &conf);
 			brightest(&was, &all, colour[k], sigmas[s] * radius, stray, &without);

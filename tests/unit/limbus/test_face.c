@@ -8,7 +8,7 @@
 #include "tests/lib/unit.h"
 #include "tests/lib/unseen/faces.h"
 
-enum { FACES = SANITISED ? 2 : 8 };
+enum { FACES = 8 };
 
 static int side_of(const struct ellipse *e, const struct unseen *u)
 {
@@ -20,8 +20,8 @@ static void both_eyes_of_a_face(void **state)
 {
 	(void)state;
 	struct limbus_found *found = mem_new(2, sizeof *found);
-	int both = 0;
-	for (int i = 0; i < FACES; i++) {
+	int both = 0, n = 0;
+	for (int i = SANITISED ? FACES - 1 : 0; i < FACES; i++, n++) {
 		struct unseen u = faces_make(2001, i, true, i % 2);
 		const bool two = limbus_find_face(found, &u.photo, i % 2, &limbus_defaults) == 2;
 		both += two;
@@ -36,8 +36,8 @@ static void both_eyes_of_a_face(void **state)
 		unseen_free(&u);
 	}
 	// The evidence misses one in twenty eyes that are open.
-	if (both < FACES - FACES / 4)
-		fail_msg("%d of %d faces have both eyes", both, FACES);
+	if (both < n - n / 4)
+		fail_msg("%d of %d faces have both eyes", both, n);
 	free(found);
 }
 
@@ -58,7 +58,7 @@ static void one_eye_is_one(void **state)
 {
 	(void)state;
 	struct limbus_found *found = mem_new(3, sizeof *found);
-	for (int i = 0; i < FACES / 2; i++) {
+	for (int i = 0; i < (SANITISED ? 1 : FACES / 2); i++) {
 		struct unseen u = faces_make(2001, i, true, false);
 		struct photo one = cut(&u.photo, &u.eye[FACES_LEFT].limbus);
 		assert_int_equal(limbus_find_face(found, &one, false, &limbus_defaults), 1);
