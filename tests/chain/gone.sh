@@ -7,9 +7,11 @@ all=$root/all
 small_face "$all"
 mkdir "$all/photos"
 for name in left_a right_a; do
-	cp "$PHOTO" "$all/photos/$name.jpg"
-	printf '%s\n' "photo.$name.focal_px = 11826.09" "photo.$name.center_px = 800 600" >>"$all/capture.conf"
+	"$VARIANT" half "$PHOTO" "$all/photos/$name.jpg"
+	printf '%s\n' "photo.$name.focal_px = 5913.045" "photo.$name.center_px = 400 300" >>"$all/capture.conf"
 done
+small=("render.size_px = 96" "render.frame_px = 64" "render.photo_px = 128" "render.map_size = 128" "render.vein_map_px = 128")
+printf '%s\n' "${small[@]}" >>"$all/capture.conf"
 run_make "$all"
 same "the whole capture" "$?" 0
 whole=$(bytes_of "$all")
@@ -86,7 +88,7 @@ gone "clips" "$root/face"
 # A file that shows both eyes gives way to one of the same name that shows one.
 face=$root/portrait
 mkdir -p "$face/photos"
-printf '%s\n' "quality = draft" "camera.focal_px = 11826.09" >"$face/capture.conf"
+printf '%s\n' "quality = draft" "camera.focal_px = 11826.09" "${small[@]}" >"$face/capture.conf"
 "${B:-build}/tests/tools/drawn_face" "$root/two.png" 2001 7 >/dev/null
 cp "$root/two.png" "$face/photos/a.png"
 run_make "$face"
