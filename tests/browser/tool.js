@@ -215,7 +215,7 @@ async function picture(b) {
 		return [sum / a.length, high - low].join();
 	})()`, 60000);
 	say(Number(off.split(",")[0]) < 3 && Number(off.split(",")[1]) > 100, "both of the same view", off);
-	await b.size(1000, 640);
+	await b.size(800, 500);
 }
 
 /* Elements of a WebM's clusters: how many frames it has. */
@@ -243,7 +243,7 @@ async function film(b) {
 	const f = await saved(b, "Save turntable", 120), n = frames(f.bytes);
 	say(f.name === "eyewright.webm" && /^video\/webm/.test(f.type) && f.bytes.readUInt32BE(0) === 0x1a45dfa3 && n >= 10, "a turntable is saved as a film", `${f.name} ${f.type} ${f.bytes.length} bytes, ${n} frames`);
 	say(await b.value("eyewright.orbit.join()") === "0,0", "and the eye stands again as it stood", await b.value("eyewright.orbit.join()"));
-	await b.size(1000, 640);
+	await b.size(800, 500);
 }
 
 async function whole_screen(b) {
@@ -308,7 +308,7 @@ async function left_out(b) {
 (async () => {
 	const b = await Browser.start();
 	try {
-		await b.size(1000, 640);
+		await b.size(800, 500);
 		await b.send("Emulation.setEmulatedMedia", { features: [{ name: "prefers-reduced-motion", value: "reduce" }] });
 		await keep(b, page, "eye", "eye");
 		await keep(b, face, "face", "face");

@@ -470,7 +470,7 @@ async function without(b) {
 (async () => {
 	const b = await Browser.start();
 	try {
-		await b.size(1000, 640);
+		await b.size(800, 500);
 		await open(b);
 		const start = await b.value("Math.round(performance.now())");
 		console.log(`# opened after ${start} ms, ${(fs.statSync(page).size / 1e6).toFixed(1)} MB`);
@@ -488,7 +488,7 @@ async function without(b) {
 		await beside(b);
 		await everyone(b);
 		if (face) {
-			await b.size(1000, 640);
+			await b.size(800, 500);
 			await character(b);
 			url = pathToFileURL(page).href;
 		}

@@ -12,7 +12,7 @@ capture=$root/c
 small_face "$capture"
 rm "$capture"/targets/*
 # Laid onto the subject as wholly as others are, and by more points than a tenth of those: lids that lie a millimetre off it, their lashes do, too.
-sed -i '/^target.mpfb/d; /^transfer\./d; s/^track.points = .*/track.points = 1500/' "$capture/capture.conf"
+sed -i '/^target.mpfb/d; /^transfer\./d; /^render.lashes/d; /^render.brow_hairs/d; s/^track.points = .*/track.points = 1500/' "$capture/capture.conf"
 "$DRESSED" "$HEAD" "$capture/targets/metres.glb" unit=0.1 px=256
 "$DRESSED" "$HEAD" "$capture/targets/blender.glb" unit=10 z_up px=256 lid_hair
 # The first, which the page shows: its three maps of 4096 px with a photograph's noise, red on its left and blue on its right.

@@ -25,7 +25,7 @@ small_face() {
 		printf '%s\n' "quality = draft" "track.settle_frames = 0" "track.points = 200" "track.sweeps = 1" "train.sample = 64" \
 			"transfer.rounds = 1 1 1" "transfer.nodes = 100 300 1000" "extrapolate.map_step_px = 8" \
 			"render.look_px = 200" "render.cell_px = 100" "render.blink_frames = 3" "render.sheet_px = 300" "render.clip_px = 160" \
-			"render.skin_lights = 4" "render.glb_targets = 4" "render.clip_seconds = 0.1"; } >"$1/capture.conf"
+			"render.skin_lights = 4" "render.lashes = 12" "render.brow_hairs = 30" "render.glb_targets = 4" "render.clip_seconds = 0.1"; } >"$1/capture.conf"
 }
 
 # run_make DIR [TARGET...]: status of make; all it says in $log. A capture's name goes through the environment or as
