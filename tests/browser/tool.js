@@ -198,8 +198,8 @@ const saved = (b, button, seconds) => b.value(`(async () => {
 
 /* As fine as a picture at rest, 3840 px wide at most, and of what is seen. */
 async function picture(b) {
-	await b.size(1300, 260);  // a low window: few rows at 3840 px
-	await open(b, page, "#gaze=0,0&field=20");
+	await b.size(2300, 230);  // a low, broad window: few rows at 3840 px
+	await open(b, page, "#gaze=0,0&field=9");
 	await b.until(settled, 180);
 	const small = await saved(b, "Save picture", 120), large = await saved(b, "Save picture, 4k", 240);
 	const size = p => p.bytes.readUInt32BE(0) === 0x89504e47 ? [p.bytes.readUInt32BE(16), p.bytes.readUInt32BE(20)] : [0, 0], [s, l] = [size(small), size(large)];

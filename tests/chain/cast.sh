@@ -8,6 +8,7 @@ for light in dim warm cool dusk; do
 	"$VARIANT" $light "$PHOTO" "$root/$light/photos/$(basename "$PHOTO")"
 	# the limbus as it is, so that colours alone are compared
 	sed -i 's/^quality.*/quality = review/; s/^light.illuminant.*//; $a photo.right_softbox.limbus_px = 850.25 661.62 406.35 401.25 173.8' "$root/$light/capture.conf"
+	printf '%s\n' "render.size_px = 128" "render.frames = 1" "render.frame_px = 64" "render.exr = no" >>"$root/$light/capture.conf"
 	run_make "$root/$light"
 	same "$light: the chain runs through" "$?" 0
 	compare=$(echo "$root/$light"/work/render/*_compare.json)
