@@ -203,7 +203,7 @@ if [ -x "$RECUT" ]; then
 		capture "alone_$how"
 		rm "$root/alone_$how/subject.ply"
 		echo "quality = draft" >"$root/alone_$how/capture.conf"
-		"$RECUT" "$root/alone_$how/video/a.mp4" samples/face/video/face.mp4 "$how:0-299"
+		"$RECUT" "$root/alone_$how/video/a.mp4" samples/face/video/face.mp4 "$how:0-$([ $how = aside ] && echo 29 || echo 299)"
 	done
 	for how in sway over; do
 		if said=$("$BIN/track" --capture="$root/alone_$how" 2>&1); then

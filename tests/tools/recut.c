@@ -158,17 +158,18 @@ int main(int argc, char **argv)
 	struct err err = { 0 };
 	struct video_info info;
 	static uint8_t *rgb[FRAMES];
-	long frames = 0;
+	long frames = 0, wanted = 0;
 	int n = argc - 3;
 	bool ok = n > 0 && n <= PARTS;
 	for (int i = 0; i < n && ok; i++)
-		ok = read_part(&part[i], argv[3 + i]);
+		ok = read_part(&part[i], argv[3 + i]) && (wanted += (part[i].last - part[i].first + 1) * part[i].times) > 0;
 	if (!ok)
 		return 2;
 	struct video_writer *writer = 0;
 	const int times = !strcmp(part[0].how, "fifth") ? 5 : 1;
+	const char *preset = wanted > 100 ? "ultrafast" : "veryfast";  // of a long film half the time is its writing
 	if (load(rgb, &info, argv[2], n, part, &err))
-		writer = video_writer_open(argv[1], &(struct video_writer_conf){ .width = info.width / times, .height = info.height / times, .fps = info.fps, .crf = 16, .preset = "veryfast" }, &err);
+		writer = video_writer_open(argv[1], &(struct video_writer_conf){ .width = info.width / times, .height = info.height / times, .fps = info.fps, .crf = 16, .preset = preset }, &err);
 	for (int i = 0; i < n && writer && !err_is(&err); i++)
 		put(writer, &frames, &part[i], rgb, &info, &err);
 	video_writer_close(writer, !err_is(&err), &err);
