@@ -36,7 +36,7 @@ LABEL="sanitised " part "unit tests, address and undefined-behaviour sanitisers"
 beside "short trainings of the networks" tests/evidence/short.sh
 # The longest first: they leave the others to fill up what is left.
 begun=
-for script in tests/chain/{skin,viewer,track,characters,export,views,kill,gone,long,hostile,slurm,head,cast,threads,summary}.sh tests/chain/*.sh; do
+for script in tests/chain/{track,viewer,skin,characters,export,views,gone,kill,hostile,long,slurm,head,cast,threads,summary}.sh tests/chain/*.sh; do
 	case "$begun " in *" $script "*) continue ;; esac
 	begun="$begun $script"
 	beside "$script" "$script"
