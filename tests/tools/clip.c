@@ -15,7 +15,7 @@ static bool put(struct video_writer **writer, long *frame, const char *out, int 
 	int height = 2 * (int)lround(0.5 * width * h / w);
 	uint8_t *small = cv_resize8(px, w, h, 3, width, height);
 	if (!*writer)
-		*writer = video_writer_open(out, &(struct video_writer_conf){ .width = width, .height = height, .fps = 30, .crf = 16, .preset = "ultrafast" }, err);
+		*writer = video_writer_open(out, &(struct video_writer_conf){ .width = width, .height = height, .fps = 30, .crf = 16 }, err);
 	bool ok = *writer;
 	for (int i = 0; i < times && ok; i++)
 		ok = video_writer_put(*writer, small, (double)(*frame)++ / 30, err);

@@ -123,7 +123,7 @@ int main(int argc, char **argv)
 		return 2;
 	}
 	struct err err = { 0 };
-	struct video_writer *to = video_writer_open(argv[2], &(struct video_writer_conf){ .width = W, .height = H, .fps = FPS, .crf = 16, .preset = "ultrafast" }, &err);
+	struct video_writer *to = video_writer_open(argv[2], &(struct video_writer_conf){ .width = W, .height = H, .fps = FPS, .crf = 16 }, &err);
 	const bool ok = to && film(to, argv[1], &err);
 	if (!video_writer_close(to, ok, &err) || !ok)
 		fprintf(stderr, "%s\n", err.msg);

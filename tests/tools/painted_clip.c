@@ -74,7 +74,7 @@ static bool write_conf(struct err *err)
 static bool make(double fps, struct err *err)
 {
 	char *folder = at("video"), *path = at("video/painted.mp4");
-	struct video_writer_conf conf = { .width = FILM_W, .height = FILM_H, .fps = fps, .crf = 14, .preset = "ultrafast" };
+	struct video_writer_conf conf = { .width = FILM_W, .height = FILM_H, .fps = fps, .crf = 14, .preset = "veryfast" };
 	struct video_writer *writer = file_mkdirs(folder, err) ? video_writer_open(path, &conf, err) : 0;
 	long n = lround(FILM_SECONDS * fps), batch = 32;
 	uint8_t *rgb = mem_array((size_t)batch, FILM_W * FILM_H * 3);
