@@ -195,7 +195,7 @@ if command -v node >/dev/null; then
 	same "it is the film's, to a fifth ($(albedo); $film_albedo)" "$(echo "$(albedo) $film_albedo" | awk '{ for (k = 1; k <= 3; k++) near += $k > 0.8 * $(k + 3) && $k < 1.25 * $(k + 3); print NF, near }')" "6 3"
 	check "the page says so" grep -q "Skin: of the person in views/, which show [45][0-9] % of the face near the eyes" "$round/work/review/index.html"
 	cp "$capture/work/skin/track.json" "$round/work/skin/track.json"
-	"$BIN/render" --capture="$round" >"$log" 2>&1 </dev/null
+	"$BIN/render" --capture="$round" --skin_px=1536 >"$log" 2>&1 </dev/null
 	same "a video that does not serve: that of views/" "$? $(grep -c 'the video is not the one that was followed: it is that of views/' "$log") $(grep -c 'skin of views/: ' "$log")" "0 1 1"
 	sed -i 's#"views/a.png"#"views/../../a.png"#' "$round/work/rig.json"
 	"$BIN/render" --capture="$round" >"$log" 2>&1 </dev/null
