@@ -3,7 +3,7 @@
 . "$(dirname "$0")/../lib/chain.sh"
 . tests/lib/many.sh
 . tests/lib/slurm.sh
-N=${N:-9}
+N=${N:-13}
 
 for program in slurmctld slurmd munged sbatch; do
 	command -v "$program" >/dev/null || { skip "job arrays of Slurm" "slurm-wlm is not installed ($program)"; exit 0; }
