@@ -5,7 +5,7 @@
 #include "tests/lib/scenes/portrayed.h"
 #include "tests/lib/unit.h"
 
-enum { WIDTH = SANITISED ? 120 : 240, HEIGHT = SANITISED ? 50 : 100, MM = WIDTH / 5, FINER = 4 };
+enum { WIDTH = 240, HEIGHT = 100, FINER = 4 };
 
 static int setup(void **state)
 {
@@ -30,7 +30,7 @@ static struct image draw(struct portrayed *m, double lash_mm, int samples, int f
 	double c[12];
 	drive_look(c, &m->rig, 0, 0, 1);
 	portrait_pose(p, c);
-	struct portrait_view view = portrait_front(&m->rig, 0, MM, 0.15, -0.2, WIDTH * finer, HEIGHT * finer);
+	struct portrait_view view = portrait_front(&m->rig, 0, 48, 0.15, -0.2, WIDTH * finer, HEIGHT * finer);
 	portrait_light(p, &view, true);
 	struct image out = portrait_draw(p, &view);
 	// 1: one edge of skin before another in the pixel, by the depths of three samples in a row; 2: a hair in it.
