@@ -76,7 +76,7 @@ build-fuzz/libeyewright.a: $(FUZZ_OBJ)
 	@$(AR) qcsD $@ $(FUZZ_OBJ)
 build-fuzz/fuzz_%: build-fuzz/tests/fuzz/fuzz_%.o build-fuzz/libeyewright.a
 	@clang++ -fsanitize=fuzzer,address,undefined -Wl,--as-needed -o $@ $^ $(LIBS) -lgomp
--include $(FUZZ_OBJ:.o=.d)
+-include $(FUZZ_OBJ:.o=.d) $(FUZZERS:build-fuzz/%=build-fuzz/tests/fuzz/%.d)
 
 fuzzers: $(FUZZERS) $(TOOLS)
 fuzz: fuzzers
