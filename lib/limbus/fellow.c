@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "base/mem.h"
+#include "math/vec.h"
 
 /* Tilts on a square grid, x outwards along the line through both eyes, SIDE cells a way; as many aspects as a Gaussian's fifth moments need. */
 enum { SIDE = 121, CELLS = SIDE * SIDE, ASPECTS = 3 };
@@ -116,12 +117,11 @@ static void mean_of(double mean[2], double *sigma, const double *weight, const s
 	*sigma = sqrt(fmax(length_off, along_off) / sum);
 }
 
-/* Of each tilt of this eye: by its own picture and by the other's, over all aspects. */
-static void posterior(double *post, const struct plane *p, const struct fellow_tilt *eye, const struct fellow_tilt *other, const double off[2],
+/* Of each tilt of this eye: by its own picture and by the other's, over all aspects; sums to 1. False: none is possible. */
+static bool posterior(double *post, const struct plane *p, const struct fellow_tilt *eye, const struct fellow_tilt *other, const double off[2],
                       const struct fellow_conf *conf, const struct opening_conf *opening)
 {
 	double *like = mem_new(CELLS, sizeof *like), *theirs = mem_new(CELLS, sizeof *theirs), *said = mem_new(CELLS, sizeof *said), *work = mem_new(CELLS, sizeof *work);
-	double total = 0;
 	for (int a = 0; a < ASPECTS; a++) {
 		likelihood(like, p, eye, ASPECT_AT[a], opening);
 		likelihood(theirs, p, other, ASPECT_AT[a], opening);
@@ -131,48 +131,60 @@ static void posterior(double *post, const struct plane *p, const struct fellow_t
 		for (int i = 0; i < CELLS; i++)
 			post[i] += ASPECT_WEIGHT[a] * like[i] * ((1 - conf->squint) * said[i] + alone);
 	}
-	total = sum_of(post);
+	const double total = sum_of(post);
 	for (int i = 0; i < CELLS && total > 0; i++)
 		post[i] /= total;
 	free(like);
 	free(theirs);
 	free(said);
 	free(work);
+	return total > 0;
+}
+
+/* Which share of a tilt's cell lies to a side. */
+static double beside(const double tilt[2], const double side[2])
+{
+	const double to = tilt[0] * side[0] + tilt[1] * side[1];
+	return to > 1e-9 ? 1 : to < -1e-9 ? 0 : 0.5;
+}
+
+/* What a posterior says; it is left with the likelier side alone. */
+static void conclude(struct fellow_said *said, double *post, const struct plane *p, double towards)
+{
+	double side[2] = { cos(towards), sin(towards) }, mass = 0;
+	mean_of(said->all, &said->all_sigma, post, p, side);
+	for (int i = 0; i < CELLS; i++)
+		mass += post[i] * beside(p->tilt[i], side);
+	said->turned = mass < 0.5;
+	said->margin = log(fmax(mass, 1 - mass)) - log(fmax(fmin(mass, 1 - mass), 1e-12));
+	for (int i = 0; i < 2 && said->turned; i++)
+		side[i] = -side[i];
+	for (int i = 0; i < CELLS; i++)
+		post[i] *= beside(p->tilt[i], side);
+	mean_of(said->hill, &said->hill_sigma, post, p, side);
 }
 
 bool fellow_tilt_of(struct fellow_said *said, const struct fellow_tilt *eye, const struct fellow_tilt *other, const struct fellow_conf *conf,
                     const struct opening_conf *opening)
 {
-	double out[2] = { eye->place[0] - other->place[0], eye->place[1] - other->place[1] };
-	const double length = hypot(out[0], out[1]), near = sqrt(pow(eye->place[0], 2) + pow(eye->place[1], 2) + pow(eye->place[2], 2)),
-	             near_other = sqrt(pow(other->place[0], 2) + pow(other->place[1], 2) + pow(other->place[2], 2));
+	double out[2] = { eye->place[0] - other->place[0], eye->place[1] - other->place[1] }, sight[3], sight_other[3];
+	const double length = hypot(out[0], out[1]);
 	if (!(length > 0) || !(eye->seen > 0) || !(other->seen > 0))
 		return false;
 	out[0] /= length;
 	out[1] /= length;
+	vec_unit(sight, eye->place);
+	vec_unit(sight_other, other->place);
 	// The axes differ by `apart`; the tilts by how differently the camera lies to both eyes less that.
-	const double lies[2] = { other->place[0] / near_other - eye->place[0] / near, other->place[1] / near_other - eye->place[1] / near };
+	const double lies[2] = { sight_other[0] - sight[0], sight_other[1] - sight[1] };
 	const double off[2] = { lies[0] * out[0] + lies[1] * out[1] - conf->apart, lies[1] * out[0] - lies[0] * out[1] };
 	struct plane plane = plane_new(eye, other, out);
 	double *post = mem_new(CELLS, sizeof *post);
-	posterior(post, &plane, eye, other, off, conf, opening);
-	const double side[2] = { cos(eye->towards), sin(eye->towards) }, all = sum_of(post);
-	double mass = 0;
-	mean_of(said->all, &said->all_sigma, post, &plane, side);
-	for (int i = 0; i < CELLS; i++) {
-		const double to = plane.tilt[i][0] * side[0] + plane.tilt[i][1] * side[1];
-		mass += to > 1e-9 ? post[i] : to < -1e-9 ? 0 : post[i] / 2;
-	}
-	const double sign = mass >= all / 2 ? 1 : -1;
-	for (int i = 0; i < CELLS; i++) {
-		const double to = sign * (plane.tilt[i][0] * side[0] + plane.tilt[i][1] * side[1]);
-		post[i] *= to > 1e-9 ? 1 : to < -1e-9 ? 0 : 0.5;
-	}
-	mean_of(said->hill, &said->hill_sigma, post, &plane, side);
-	said->turned = sign < 0;
-	said->margin = log(fmax(mass, all - mass)) - log(fmax(fmin(mass, all - mass), 1e-12));
+	const bool any = posterior(post, &plane, eye, other, off, conf, opening);
+	if (any)
+		conclude(said, post, &plane, eye->towards);
 	said->resolved = own_sigma(eye) > plane.step;
 	free(post);
 	free(plane.tilt);
-	return all > 0;
+	return any;
 }

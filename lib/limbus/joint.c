@@ -227,23 +227,22 @@ bool limbus_joint_pose(struct pose *pose, const struct limbus_joint *joint, cons
 {
 	struct fellow_tilt tilt;
 	struct fellow_said said;
-	double sigma, cov[2][2], theta;
+	double sigma, theta;
 	if (!tell(&tilt, pose, &sigma, joint, record, eye, err))
 		return false;
 	const bool both = other && fellow_tilt_of(&said, &tilt, other, &joint->pose.fellow, &joint->pose.opening);
 	if (both)
 		pose->margin = said.margin;
-	if (both && said.turned && isfinite(pose->other_theta) && pose->other_theta > 0)
+	if (both && said.turned && pose->other_theta > 0)  // 0: there is none
 		take_other(pose);
-	double towards = pose->phi;
-	const double seen = pose->theta, one = one_hill(seen, sigma), from = towards;
+	const double seen = pose->theta, from = pose->phi, one = one_hill(seen, sigma);
+	double towards = from;
 	if (both && said.resolved)
 		theta = between_eyes(&pose->theta_sigma, &towards, &said, one);
 	else {
-		memcpy(cov, tilt.cov, sizeof cov);
-		add_outer(cov, tilt.shift);
+		add_outer(tilt.cov, tilt.shift);
 		rice_tilt(&theta, &pose->theta_sigma, seen, sigma, joint->pose.tilt_sigma);
-		pose->theta_sigma = fmax(pose->theta_sigma, rice_astray(theta, seen, towards, cov, joint->pose.tilt_sigma));
+		pose->theta_sigma = fmax(pose->theta_sigma, rice_astray(theta, seen, towards, tilt.cov, joint->pose.tilt_sigma));
 		theta = between_poses(&pose->theta_sigma, theta, pose->margin, one);
 	}
 	if (joint->aspect.sigma > 0)

@@ -12,7 +12,7 @@ struct limbus_options {
 	struct pose_conf pose;
 	struct camera_keys camera;
 	struct opt_each_list photo_focal, photo_center, photo_hint, photo_limbus, photo_eye, photo_mirrored;
-	double limit_mpx, rough_used, face_roll_deg, roll_sigma_deg, tilt_sigma_deg, face_apart_deg[2], face_level_deg, opening_sigma_deg;
+	double limit_mpx, rough_used, face_roll_deg, roll_sigma_deg, tilt_sigma_deg, face_apart_deg, face_apart_sigma_deg, face_level_deg, opening_sigma_deg;
 	int overlay_px;
 };
 

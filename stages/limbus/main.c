@@ -75,7 +75,8 @@ int main(int argc, char **argv)
 		OPT_REAL("opening_arm", &o.pose.opening.arm, 1, 100, "mm", "from the limbus back to where it turns about, between the corners of the lids"),
 		OPT_REAL("opening_sigma", &o.opening_sigma_deg, 0, 90, "deg", "of the direction that its place between them tells; 0: not asked"),
 		OPT_REAL("opening_misled", &o.pose.opening.misled, 0.001, 1, "", "chance that it tells nothing"),
-		OPT_REALS("face_apart", o.face_apart_deg, 2, -45, 45, "deg", "optical axes of both eyes, where they diverge: mean, standard deviation"),
+		OPT_REAL("face_apart", &o.face_apart_deg, -45, 45, "deg", "optical axes of both eyes, where they diverge: mean"),
+		OPT_REAL("face_apart_sigma", &o.face_apart_sigma_deg, 0.1, 45, "deg", "of that"),
 		OPT_REAL("face_level_sigma", &o.face_level_deg, 0.1, 45, "deg", "of how far one looks higher than the other"),
 		OPT_REAL("face_squint", &o.pose.fellow.squint, 0, 1, "", "chance that both have nothing to do with each other"),
 		OPT_REAL("tilt_sigma", &o.tilt_sigma_deg, 1, 1000, "deg", "how far eyes look past the lens"),
@@ -87,8 +88,8 @@ int main(int argc, char **argv)
 	o.pose.roll_sigma = o.roll_sigma_deg * M_PI / 180;
 	o.pose.tilt_sigma = o.tilt_sigma_deg * M_PI / 180;
 	o.pose.opening.sigma = o.opening_sigma_deg * M_PI / 180;
-	o.pose.fellow.apart = o.face_apart_deg[0] * M_PI / 180;
-	o.pose.fellow.apart_sigma = fmax(o.face_apart_deg[1], 0.1) * M_PI / 180;
+	o.pose.fellow.apart = o.face_apart_deg * M_PI / 180;
+	o.pose.fellow.apart_sigma = o.face_apart_sigma_deg * M_PI / 180;
 	o.pose.fellow.level_sigma = o.face_level_deg * M_PI / 180;
 	bool ok = eye_check(&o.eye, &err) && capture_list(&capture, &stage, &o.photo_eye, &err);
 	ok = ok && limbus_measure(&kept, &stage, &capture, &o, &err) && limbus_fit_poses(&kept, &stage, &capture, &o, &err);

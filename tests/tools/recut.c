@@ -162,9 +162,11 @@ int main(int argc, char **argv)
 	int n = argc - 3;
 	bool ok = n > 0 && n <= PARTS;
 	for (int i = 0; i < n && ok; i++)
-		ok = read_part(&part[i], argv[3 + i]) && (wanted += (part[i].last - part[i].first + 1) * part[i].times) > 0;
+		ok = read_part(&part[i], argv[3 + i]);
 	if (!ok)
 		return 2;
+	for (int i = 0; i < n; i++)
+		wanted += (part[i].last - part[i].first + 1) * part[i].times;
 	struct video_writer *writer = 0;
 	const int times = !strcmp(part[0].how, "fifth") ? 5 : 1;
 	const char *preset = wanted > 100 ? "ultrafast" : "veryfast";  // of a long film half the time is its writing
